@@ -1,0 +1,51 @@
+// One binding of a stage's options struct: each field once, with name, unit, legal range, origin.
+// Parsing, `-h`, the range check, run.json and the README's table are all made from it.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace colmap_seapoint {
+
+using OptionTarget = std::variant<bool*, int*, double*, std::string*>;
+
+struct OptionInfo {
+  std::string name;  // "SeaPointExtraction.min_num_features"
+  OptionTarget target;
+  std::string help;    // one line, with the unit
+  std::string origin;  // "paper 2.3", "ours", "COLMAP"
+  double min = 0, max = 0;            // legal range, both inclusive; of int and double only
+  std::vector<std::string> choices;   // legal values, of strings only; empty = any
+  bool required = false;
+  std::string default_value;          // text, taken when the option was added
+};
+
+class OptionTable {
+ public:
+  void Add(const std::string& name, bool* value, const std::string& help,
+           const std::string& origin);
+  void Add(const std::string& name, int* value, const std::string& help, const std::string& origin,
+           int min, int max);
+  void Add(const std::string& name, double* value, const std::string& help,
+           const std::string& origin, double min, double max);
+  void Add(const std::string& name, std::string* value, const std::string& help,
+           const std::string& origin, std::vector<std::string> choices = {});
+  void AddRequired(const std::string& name, std::string* value, const std::string& help);
+
+  const std::vector<OptionInfo>& Options() const { return options_; }
+  const OptionInfo* Find(const std::string& name) const;
+
+  // Sets one option from text. Returns "" or the whole sentence: name, value, rule.
+  std::string Set(const std::string& name, const std::string& text) const;
+  // "" when every value is legal and every required option is set; else the whole sentence.
+  std::string Check() const;
+
+ private:
+  std::vector<OptionInfo> options_;
+};
+
+// The value as text, as it would be typed on the command line.
+std::string OptionValueText(const OptionTarget& target);
+
+}  // namespace colmap_seapoint

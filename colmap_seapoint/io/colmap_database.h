@@ -1,0 +1,80 @@
+// COLMAP's database, 3.8 to 4.x: detected by columns, never by version; what is there is never
+// changed, only added to. The only place that knows its schema.
+//
+// rBRIEF descriptors live in a table of our own ("seapoint_descriptors", keyed to images with
+// ON DELETE CASCADE), and `descriptors` gets a stub row (rows 0, cols 128, data x''), which every
+// COLMAP tried survives. The table also keeps what tells whether a picture or an option changed.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "colmap_seapoint/base/camera.h"
+#include "colmap_seapoint/base/features.h"
+
+struct sqlite3;
+
+namespace colmap_seapoint {
+
+struct DatabaseImage {
+  uint32_t image_id = 0;
+  uint32_t camera_id = 0;
+  std::string name;
+};
+
+// A pair of image ids, smaller first.
+using ImagePair = std::pair<uint32_t, uint32_t>;
+
+class ColmapDatabase {
+ public:
+  enum class Mode { kReadOnly, kReadWrite, kCreateIfMissing };
+
+  // Throws Error: missing file, not a database, damaged (PRAGMA quick_check), locked by another
+  // program (waits up to 10 s), lacking COLMAP's tables or columns, no permission, full disk.
+  ColmapDatabase(const std::filesystem::path& path, Mode mode);
+  ~ColmapDatabase();
+  ColmapDatabase(ColmapDatabase&&) noexcept;
+
+  // Cameras with models that FindCameraModel does not know are an Error.
+  std::map<uint32_t, Camera> ReadCameras() const;
+  std::vector<DatabaseImage> ReadImages() const;  // by image_id
+  uint32_t AddCamera(const Camera& camera);       // returns camera_id; camera.camera_id is ignored
+  uint32_t AddImage(const std::string& name, uint32_t camera_id);  // returns image_id
+
+  // Everything written between Begin and Commit lands together or not at all.
+  void BeginTransaction();
+  void CommitTransaction();
+  void RollbackTransaction();
+
+  bool HasKeypoints(uint32_t image_id) const;
+  // The `fingerprint` that WriteFeatures stored; nullopt when the picture has no SeaPoints of ours.
+  std::optional<std::string> FeaturesFingerprint(uint32_t image_id) const;
+  // Keypoints (x, y, scale, orientation), stub descriptor row, our descriptor row. Replaces them,
+  // and drops this image's matches and two-view geometries, when they were there (ours changed).
+  void WriteFeatures(uint32_t image_id, const Features& features, const std::string& fingerprint);
+  // nullopt when the image has no SeaPoints of ours, or its keypoints are not the ones that belong
+  // to our descriptors (other software replaced them).
+  std::optional<Features> ReadFeatures(uint32_t image_id) const;
+
+  bool HasMatches(ImagePair pair) const;  // a row in `two_view_geometries`
+  // Both tables, in pair_id order: when id1 > id2 the match columns, F, E, H and the pose are
+  // swapped. Unset matrices are NULL. Replaces earlier rows of the pair.
+  void WriteMatches(uint32_t image_id1, uint32_t image_id2, const FeatureMatches& raw,
+                    const TwoViewGeometry& geometry);
+  // As stored: indices relate to (pair.first, pair.second). Empty when there is no row.
+  FeatureMatches ReadMatches(ImagePair pair) const;                // table `matches`
+  TwoViewGeometry ReadTwoViewGeometry(ImagePair pair) const;       // table `two_view_geometries`
+  std::vector<ImagePair> ReadVerifiedPairs() const;                // rows > 0
+
+ private:
+  std::filesystem::path path_;
+  sqlite3* db_ = nullptr;
+};
+
+}  // namespace colmap_seapoint

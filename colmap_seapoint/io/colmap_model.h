@@ -1,0 +1,24 @@
+// COLMAP's model folders, binary and text, 3.8 to 4.x (rigs.bin / frames.bin are ignored: the
+// camera poses of images.bin already contain them). The only place that knows their format.
+#pragma once
+
+#include <filesystem>
+
+#include "colmap_seapoint/base/sparse_model.h"
+
+namespace colmap_seapoint {
+
+// Reads cameras, images and points3D from `dir`; binary is preferred when both exist. Throws Error
+// naming the file and the byte or line for anything missing, truncated, inconsistent or not
+// finite, for camera models that FindCameraModel does not know, for image names that are absolute
+// or contain "..", and for point/image ids that point nowhere.
+SparseModel ReadSparseModel(const std::filesystem::path& dir);
+
+// True when `dir` holds cameras/images/points3D in either form.
+bool IsSparseModel(const std::filesystem::path& dir);
+
+// Write all three files; each is written under a temporary name and renamed. `dir` is created.
+void WriteSparseModelText(const std::filesystem::path& dir, const SparseModel& model);
+void WriteSparseModelBinary(const std::filesystem::path& dir, const SparseModel& model);
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,44 @@
+// Clouds in COLMAP's own form, binary_little_endian: float x y z nx ny nz, uchar red green blue;
+// and `<cloud>.vis`: u64 N, N x {u32 k, k x u32 image index}.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "colmap_seapoint/io/atomic_file.h"
+
+namespace colmap_seapoint {
+
+struct CloudPoint {
+  Eigen::Vector3f xyz = Eigen::Vector3f::Zero();
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+  std::array<uint8_t, 3> rgb = {0, 0, 0};
+};
+
+// Streams points to `path` and `path`.vis; memory does not grow with the cloud. Nothing appears
+// under the final names before Finish(); a writer destroyed earlier leaves no file behind.
+class CloudWriter {
+ public:
+  explicit CloudWriter(const std::filesystem::path& path);
+  ~CloudWriter();
+  // Skips (and counts) points that are not finite. `image_idxs`: positions in images.bin order.
+  void Add(const CloudPoint& point, const uint32_t* image_idxs, uint32_t num_image_idxs);
+  void Finish();
+  uint64_t NumPoints() const { return num_points_; }
+
+ private:
+  AtomicFile ply_;
+  AtomicFile vis_;
+  uint64_t num_points_ = 0;
+};
+
+// Reads the vertices of any binary_little_endian or ASCII PLY with float or double x y z; normals
+// and colours where present. Extra properties are skipped. Throws Error naming file and finding.
+std::vector<CloudPoint> ReadCloud(const std::filesystem::path& path);
+
+}  // namespace colmap_seapoint
