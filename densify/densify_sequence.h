@@ -1,0 +1,62 @@
+// The spine of densification (paper 2.2, Figure 3): pair by pair along the track, only what is new.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "colmap_seapoint/base/features.h"
+#include "colmap_seapoint/base/image.h"
+#include "colmap_seapoint/base/sparse_model.h"
+#include "densify/partial_cloud.h"
+#include "densify/partial_densification_options.h"
+
+namespace colmap_seapoint {
+
+// Where pictures and SeaPoints come from; image_idx is the position in SparseModel::images.
+// Called from several threads at once.
+class PictureSource {
+ public:
+  virtual ~PictureSource() = default;
+  // Throws Error for a picture that is missing, unreadable or of another size than its camera.
+  virtual ColorImage ReadColor(int image_idx) = 0;
+  virtual Features ReadSeaPoints(int image_idx) = 0;
+  virtual FeatureMatches Match(const Features& features1, const Features& features2) = 0;
+};
+
+// One row of pairs.csv: a pair that was densified, or a picture that was passed over.
+struct PairReport {
+  int image_idx1 = -1;
+  int image_idx2 = -1;  // -1: image1 was skipped as the first picture of a pair
+  std::string pass;     // "sequence" or "completion"
+  std::string skipped;  // why, or empty
+  double baseline = 0;  // model units
+  double overlap = 0;   // share of image1 already covered by what came before, 0..1
+  int num_oa = 0, num_na = 0, num_rea = 0;  // SeaPoints of image1 by label
+  int num_seeds = 0;
+  int num_failed_seeds = 0;  // seeds that did not spread
+  int64_t num_points = 0;
+  double rectification_seconds = 0, propagation_seconds = 0, total_seconds = 0;  // wall
+};
+
+struct LeftOutPicture {
+  int image_idx = -1;
+  std::string reason;
+};
+
+struct SequenceReport {
+  std::vector<PairReport> pairs;
+  std::vector<LeftOutPicture> left_out;  // pictures that could not be read
+  int64_t num_points = 0;
+};
+
+// Densifies every pair of the model's pictures, taken in the order of their names (natural sort:
+// "2" before "10"), hands each partial local cloud to `sink` in processing order (from the caller's
+// thread), and calls `progress(done, total)` now and then. Same clouds for any num_threads.
+SequenceReport DensifySequence(const SparseModel& model, PictureSource* source,
+                               const PartialDensificationOptions& options, int num_threads,
+                               const std::function<void(const PartialCloud&)>& sink,
+                               const std::function<void(int64_t, int64_t)>& progress);
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include "colmap_seapoint/base/options.h"
+
+namespace colmap_seapoint {
+
+// Each field's meaning, unit, legal range and origin: Bind(), in the .cc file.
+struct PartialDensificationOptions {
+  std::string mode = "partial";
+  std::string redundancy = "all";
+  double max_overlap = 0.6;
+  int step = 0;
+  int window_size = 9;
+  double min_zncc = 0.7;
+  double influence_radius = 0.03;
+  double max_expansion = 0.06;
+  double min_mean_motion = 0.02;
+  int min_num_seeds = 20;
+  bool completion = true;
+
+  void Bind(OptionTable* table);
+  std::string Check() const;
+};
+
+}  // namespace colmap_seapoint

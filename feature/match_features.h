@@ -1,0 +1,38 @@
+// The spine of matching (paper 2.4, Figure 8): Hamming matches, one-to-one -> flow filter ->
+// two-view geometry.
+#pragma once
+
+#include <string>
+
+#include "colmap_seapoint/base/camera.h"
+#include "colmap_seapoint/base/features.h"
+#include "colmap_seapoint/base/options.h"
+#include "feature/flow_filter.h"
+#include "feature/hamming_matcher.h"
+#include "feature/two_view_verification.h"
+
+namespace colmap_seapoint {
+
+struct SeaPointMatchingOptions {
+  HammingMatcherOptions hamming;
+  FlowFilterOptions flow;
+  TwoViewVerificationOptions verification;
+
+  void Bind(OptionTable* table);
+};
+
+struct MatchedPair {
+  FeatureMatches matches;  // one-to-one, flow-filtered: what goes into COLMAP's `matches`
+  TwoViewGeometry geometry;
+};
+
+// Consolidated matches only (paper 2.4), without geometry: inter- and intrapair matching.
+FeatureMatches MatchSeaPoints(const Features& features1, const Features& features2,
+                              const SeaPointMatchingOptions& options);
+
+// Consolidated matches and their geometry. Same result for any thread count; runs on the caller's
+// thread. Cost: about 0.05 CPU s a pair of 3000 points.
+MatchedPair MatchFeatures(const Camera& camera1, const Features& features1, const Camera& camera2,
+                          const Features& features2, const SeaPointMatchingOptions& options);
+
+}  // namespace colmap_seapoint
