@@ -1,0 +1,257 @@
+#include "colmap_seapoint/base/camera.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace colmap_seapoint {
+namespace {
+
+constexpr double kHalfPi = 1.57079632679489661923;
+
+constexpr std::array<CameraModelInfo, 11> kModels = {{
+    {CameraModel::kSimplePinhole, "SIMPLE_PINHOLE", 3, true},
+    {CameraModel::kPinhole, "PINHOLE", 4, false},
+    {CameraModel::kSimpleRadial, "SIMPLE_RADIAL", 4, true},
+    {CameraModel::kRadial, "RADIAL", 5, true},
+    {CameraModel::kOpenCV, "OPENCV", 8, false},
+    {CameraModel::kOpenCVFisheye, "OPENCV_FISHEYE", 8, false},
+    {CameraModel::kFullOpenCV, "FULL_OPENCV", 12, false},
+    {CameraModel::kFov, "FOV", 5, false},
+    {CameraModel::kSimpleRadialFisheye, "SIMPLE_RADIAL_FISHEYE", 4, true},
+    {CameraModel::kRadialFisheye, "RADIAL_FISHEYE", 5, true},
+    {CameraModel::kThinPrismFisheye, "THIN_PRISM_FISHEYE", 12, false},
+}};
+
+bool HasSingleFocal(CameraModel model) {
+  return kModels[static_cast<size_t>(model)].has_single_focal;
+}
+
+bool IsFisheye(CameraModel model) {
+  return model == CameraModel::kOpenCVFisheye || model == CameraModel::kSimpleRadialFisheye ||
+         model == CameraModel::kRadialFisheye || model == CameraModel::kThinPrismFisheye;
+}
+
+// A factor of the radius and its derivative by the squared radius.
+struct Radial {
+  double factor;
+  double derivative;
+};
+
+Radial Polynomial(double s, double k1, double k2 = 0, double k3 = 0, double k4 = 0) {
+  return {1 + s * (k1 + s * (k2 + s * (k3 + s * k4))),
+          k1 + s * (2 * k2 + s * (3 * k3 + s * 4 * k4))};
+}
+
+Radial Rational(double s, const double* p) {
+  const Radial numerator = Polynomial(s, p[4], p[5], p[8]);
+  const Radial denominator = Polynomial(s, p[9], p[10], p[11]);
+  const double factor = numerator.factor / denominator.factor;
+  return {factor, (numerator.derivative - factor * denominator.derivative) / denominator.factor};
+}
+
+// The three cases, their thresholds, and the sign of the first one are COLMAP's.
+Radial FovFactor(double r2, double omega) {
+  constexpr double kEpsilon = 1e-4;
+  const double omega2 = omega * omega;
+  if (omega2 < kEpsilon) return {omega2 * r2 / 3 - omega2 / 12 + 1, omega2 / 3};
+  const double t = std::tan(omega / 2);
+  if (r2 < kEpsilon) {
+    return {-2 * t * (4 * r2 * t * t - 3) / (3 * omega), -8 * t * t * t / (3 * omega)};
+  }
+  const double r = std::sqrt(r2);
+  const double a = 2 * t;
+  const double factor = std::atan(r * a) / (r * omega);
+  return {factor, (a / (1 + a * a * r2) / omega - factor) / (2 * r2)};
+}
+
+// Every model maps a point w of a plane (z = 1 for perspective models; the direction's angle from
+// the axis for fisheye models) to radial(|w|^2) * w + tangential and prism terms.
+Radial RadialFactor(CameraModel model, const double* p, double s) {
+  switch (model) {
+    case CameraModel::kSimplePinhole:
+    case CameraModel::kPinhole:
+      return {1, 0};
+    case CameraModel::kSimpleRadial:
+    case CameraModel::kSimpleRadialFisheye:
+      return Polynomial(s, p[3]);
+    case CameraModel::kRadial:
+    case CameraModel::kRadialFisheye:
+      return Polynomial(s, p[3], p[4]);
+    case CameraModel::kOpenCV:
+      return Polynomial(s, p[4], p[5]);
+    case CameraModel::kOpenCVFisheye:
+      return Polynomial(s, p[4], p[5], p[6], p[7]);
+    case CameraModel::kFullOpenCV:
+      return Rational(s, p);
+    case CameraModel::kFov:
+      return FovFactor(s, p[4]);
+    case CameraModel::kThinPrismFisheye:
+      return Polynomial(s, p[4], p[5], p[8], p[9]);
+  }
+  return {1, 0};
+}
+
+bool HasTangential(CameraModel model) {
+  return model == CameraModel::kOpenCV || model == CameraModel::kFullOpenCV ||
+         model == CameraModel::kThinPrismFisheye;
+}
+
+Eigen::Vector2d Distort(CameraModel model, const double* p, const Eigen::Vector2d& w) {
+  const double u = w.x(), v = w.y(), s = u * u + v * v;
+  Eigen::Vector2d d = RadialFactor(model, p, s).factor * w;
+  if (HasTangential(model)) {
+    d.x() += 2 * p[6] * u * v + p[7] * (s + 2 * u * u);
+    d.y() += 2 * p[7] * u * v + p[6] * (s + 2 * v * v);
+  }
+  if (model == CameraModel::kThinPrismFisheye) d += s * Eigen::Vector2d(p[10], p[11]);
+  return d;
+}
+
+Eigen::Matrix2d DistortJacobian(CameraModel model, const double* p, const Eigen::Vector2d& w) {
+  const double u = w.x(), v = w.y();
+  const Radial radial = RadialFactor(model, p, w.squaredNorm());
+  Eigen::Matrix2d jacobian =
+      radial.factor * Eigen::Matrix2d::Identity() + 2 * radial.derivative * w * w.transpose();
+  if (HasTangential(model)) {
+    const double p1 = p[6], p2 = p[7];
+    Eigen::Matrix2d tangential;
+    tangential << 2 * p1 * v + 6 * p2 * u, 2 * p1 * u + 2 * p2 * v,  //
+        2 * p2 * v + 2 * p1 * u, 2 * p2 * u + 6 * p1 * v;
+    jacobian += tangential;
+  }
+  if (model == CameraModel::kThinPrismFisheye) {
+    jacobian += 2 * Eigen::Vector2d(p[10], p[11]) * w.transpose();
+  }
+  return jacobian;
+}
+
+// Newton with step halving. Leaves *w where the residual stopped falling; returns the residual.
+double SolveFrom(CameraModel model, const double* p, const Eigen::Vector2d& target,
+                 Eigen::Vector2d* w) {
+  Eigen::Vector2d residual = Distort(model, p, *w) - target;
+  for (int iteration = 0; iteration < 50 && residual.norm() > 1e-15; ++iteration) {
+    const Eigen::Matrix2d jacobian = DistortJacobian(model, p, *w);
+    if (!(std::abs(jacobian.determinant()) > 1e-14)) break;
+    const Eigen::Vector2d step = jacobian.inverse() * residual;
+    double fraction = 1;
+    Eigen::Vector2d next, next_residual;
+    do {
+      next = *w - fraction * step;
+      next_residual = Distort(model, p, next) - target;
+      fraction *= 0.5;
+    } while (!(next_residual.norm() < residual.norm()) && fraction > 1e-4);
+    if (!(next_residual.norm() < residual.norm())) break;
+    *w = next;
+    residual = next_residual;
+  }
+  return residual.norm();
+}
+
+// False when the lens folds back somewhere between the axis and w: w is then a false solution.
+bool OnPrincipalBranch(CameraModel model, const double* p, const Eigen::Vector2d& w) {
+  for (int i = 1; i <= 16; ++i) {
+    const double determinant = DistortJacobian(model, p, w * (i / 16.0)).determinant();
+    if (!(determinant > 0)) return false;
+  }
+  return true;
+}
+
+Eigen::Vector2d FirstGuess(CameraModel model, const double* p, const Eigen::Vector2d& target) {
+  const double radius = target.norm();
+  if (model != CameraModel::kFov || radius < 1e-6 || std::abs(p[4]) < 1e-2) return target;
+  const double angle = std::min(std::abs(radius * p[4]), kHalfPi - 1e-4);
+  return target * (std::tan(angle) / (2 * std::tan(std::abs(p[4]) / 2) * radius));
+}
+
+// tolerance: in the units of the plane. nullopt when the target is not reached.
+std::optional<Eigen::Vector2d> Undistort(CameraModel model, const double* p,
+                                         const Eigen::Vector2d& target, double tolerance) {
+  Eigen::Vector2d w = FirstGuess(model, p, target);
+  if (SolveFrom(model, p, target, &w) < tolerance && OnPrincipalBranch(model, p, w)) return w;
+  // Follow the solution outwards from the axis, where it is known.
+  w.setZero();
+  constexpr int kNumSteps = 64;
+  for (int i = 1; i <= kNumSteps; ++i) {
+    if (!(SolveFrom(model, p, target * (i / double{kNumSteps}), &w) < tolerance)) {
+      return std::nullopt;
+    }
+  }
+  if (!OnPrincipalBranch(model, p, w)) return std::nullopt;
+  return w;
+}
+
+}  // namespace
+
+const CameraModelInfo* FindCameraModel(int model_id) {
+  if (model_id < 0 || model_id >= static_cast<int>(kModels.size())) return nullptr;
+  return &kModels[static_cast<size_t>(model_id)];
+}
+
+const CameraModelInfo* FindCameraModel(const std::string& name) {
+  for (const CameraModelInfo& info : kModels) {
+    if (name == info.name) return &info;
+  }
+  return nullptr;
+}
+
+std::string CameraModelNames() {
+  std::string names;
+  for (const CameraModelInfo& info : kModels) {
+    if (!names.empty()) names += ", ";
+    names += info.name;
+  }
+  return names;
+}
+
+double Camera::FocalX() const { return params[0]; }
+double Camera::FocalY() const { return params[HasSingleFocal(model) ? 0 : 1]; }
+double Camera::PrincipalX() const { return params[HasSingleFocal(model) ? 1 : 2]; }
+double Camera::PrincipalY() const { return params[HasSingleFocal(model) ? 2 : 3]; }
+
+std::optional<Eigen::Vector2d> Camera::ImgFromCam(const Eigen::Vector3d& point_in_cam) const {
+  if (!(point_in_cam.z() > 0)) return std::nullopt;
+  Eigen::Vector2d w = point_in_cam.head<2>() / point_in_cam.z();
+  if (IsFisheye(model)) {
+    const double r = w.norm();
+    if (r > std::numeric_limits<double>::epsilon()) w *= std::atan(r) / r;
+  }
+  const Eigen::Vector2d d = Distort(model, params.data(), w);
+  const Eigen::Vector2d pixel(FocalX() * d.x() + PrincipalX(), FocalY() * d.y() + PrincipalY());
+  if (!pixel.allFinite()) return std::nullopt;
+  return pixel;
+}
+
+std::optional<Eigen::Vector2d> Camera::CamFromImg(const Eigen::Vector2d& pixel) const {
+  const Eigen::Vector2d target((pixel.x() - PrincipalX()) / FocalX(),
+                               (pixel.y() - PrincipalY()) / FocalY());
+  if (!target.allFinite()) return std::nullopt;
+  const double tolerance = 1e-3 / std::max(std::abs(FocalX()), std::abs(FocalY()));
+  const std::optional<Eigen::Vector2d> w = Undistort(model, params.data(), target, tolerance);
+  if (!w || !w->allFinite()) return std::nullopt;
+  if (!IsFisheye(model)) return w;
+  const double theta = w->norm();
+  if (theta > kHalfPi - 1e-9) return std::nullopt;
+  if (theta < std::numeric_limits<double>::epsilon()) return w;
+  return Eigen::Vector2d(*w * (std::tan(theta) / theta));
+}
+
+Camera MakeCamera(CameraModel model, double focal, int width, int height) {
+  const CameraModelInfo& info = kModels[static_cast<size_t>(model)];
+  Camera camera;
+  camera.model = model;
+  camera.width = width;
+  camera.height = height;
+  camera.params.assign(static_cast<size_t>(info.num_params), 0.0);
+  size_t i = 0;
+  camera.params[i++] = focal;
+  if (!info.has_single_focal) camera.params[i++] = focal;
+  camera.params[i++] = width / 2.0;
+  camera.params[i] = height / 2.0;
+  if (model == CameraModel::kFov) camera.params[4] = 1e-2;  // COLMAP's: 0 is singular
+  return camera;
+}
+
+}  // namespace colmap_seapoint
