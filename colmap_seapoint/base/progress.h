@@ -1,0 +1,54 @@
+// What a person sees while a command runs: log lines and progress with the time left, on stderr.
+// Only commands and the program's own parts use it; feature/ and densify/ never print.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace colmap_seapoint {
+
+enum class LogLevel : int { kError = 0, kWarning = 1, kInfo = 2, kDebug = 3 };
+
+// Lines above this level are not printed. Progress counts as kInfo.
+void SetLogLevel(LogLevel level);
+LogLevel GetLogLevel();
+
+// One line each, from any thread; a rewriting progress line is wiped first and comes back later.
+void LogError(const std::string& line);
+void LogWarning(const std::string& line);
+void LogInfo(const std::string& line);
+void LogDebug(const std::string& line);
+
+// "42 s", "3 min 05 s", "2 h 07 min".
+std::string DurationText(double seconds);
+
+// One counted job. On a terminal a single line is rewritten; elsewhere a plain line appears when
+// it tells something new: at least 10 s after the last one, and 10 % or a minute further.
+class Progress {
+ public:
+  // `already_done` of `total` were finished by an earlier run: they do not count for the speed.
+  Progress(const std::string& label, int64_t total, int64_t already_done = 0);
+  ~Progress();  // wipes an unfinished rewriting line
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void Update(int64_t done);
+  void Finish();  // "<label>: <total> in <time>"
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::string Line(int64_t done, double elapsed_seconds) const;
+
+  std::string label_;
+  int64_t total_ = 0;
+  int64_t already_done_ = 0;
+  bool is_terminal_ = false;
+  bool finished_ = false;
+  Clock::time_point start_;
+  Clock::time_point last_line_;
+  int64_t last_done_ = 0;
+};
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,137 @@
+#include "colmap_seapoint/base/options.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "colmap_seapoint/base/natural_order.h"
+#include "colmap_seapoint/base/progress.h"
+
+namespace colmap_seapoint {
+namespace {
+
+struct Values {
+  bool flag = true;
+  int count = 2500;
+  double share = 0.6;
+  std::string mode = "partial";
+  std::string path;
+
+  OptionTable Table() {
+    OptionTable table;
+    table.Add("Group.flag", &flag, "a flag", "ours");
+    table.Add("Group.count", &count, "how many", "paper 2.3", 1, 100000);
+    table.Add("Group.share", &share, "a share", "ours", 0, 1);
+    table.Add("Group.mode", &mode, "which", "ours", {"partial", "complete"});
+    table.AddRequired("image_path", &path, "folder");
+    return table;
+  }
+};
+
+TEST(OptionTable, TakesDefaultsWhenAdded) {
+  Values values;
+  const OptionTable table = values.Table();
+  ASSERT_EQ(table.Options().size(), 5u);
+  EXPECT_EQ(table.Find("Group.flag")->default_value, "1");
+  EXPECT_EQ(table.Find("Group.count")->default_value, "2500");
+  EXPECT_EQ(table.Find("Group.share")->default_value, "0.6");
+  EXPECT_EQ(table.Find("Group.mode")->default_value, "partial");
+  EXPECT_TRUE(table.Find("image_path")->required);
+  EXPECT_EQ(table.Find("Group.nothing"), nullptr);
+}
+
+TEST(OptionTable, SetsEveryType) {
+  Values values;
+  const OptionTable table = values.Table();
+  EXPECT_EQ(table.Set("Group.flag", "0"), "");
+  EXPECT_EQ(table.Set("Group.count", "100000"), "");
+  EXPECT_EQ(table.Set("Group.share", "1e-3"), "");
+  EXPECT_EQ(table.Set("Group.mode", "complete"), "");
+  EXPECT_EQ(table.Set("image_path", "a b"), "");
+  EXPECT_FALSE(values.flag);
+  EXPECT_EQ(values.count, 100000);
+  EXPECT_EQ(values.share, 1e-3);
+  EXPECT_EQ(values.mode, "complete");
+  EXPECT_EQ(values.path, "a b");
+  EXPECT_EQ(OptionValueText(table.Find("Group.share")->target), "0.001");
+}
+
+TEST(OptionTable, RefusalsNameOptionValueAndRuleAndChangeNothing) {
+  Values values;
+  const OptionTable table = values.Table();
+  EXPECT_EQ(table.Set("Group.flag", "yes"), "--Group.flag yes: must be 0 or 1");
+  EXPECT_EQ(table.Set("Group.count", "0"), "--Group.count 0: must lie between 1 and 100000");
+  EXPECT_EQ(table.Set("Group.count", "100001"),
+            "--Group.count 100001: must lie between 1 and 100000");
+  EXPECT_EQ(table.Set("Group.share", "1.01"), "--Group.share 1.01: must lie between 0 and 1");
+  EXPECT_EQ(table.Set("Group.mode", "half"), "--Group.mode half: must be one of partial complete");
+  EXPECT_EQ(table.Set("Group.none", "1"), "--Group.none: there is no such option");
+  for (const char* text : {"", " ", "3.5", "3x", "0x10", "99999999999999", "--3", "+-3"}) {
+    EXPECT_EQ(table.Set("Group.count", text).find("--Group.count "), 0u) << text;
+  }
+  for (const char* text : {"", "nan", "inf", "-0.1", "0,5", "0.5 "}) {
+    EXPECT_EQ(table.Set("Group.share", text).find("--Group.share "), 0u) << text;
+  }
+  EXPECT_TRUE(values.flag);
+  EXPECT_EQ(values.count, 2500);
+  EXPECT_EQ(values.share, 0.6);
+  EXPECT_EQ(values.mode, "partial");
+}
+
+TEST(OptionTable, CheckSeesMissingAndIllegalValues) {
+  Values values;
+  const OptionTable table = values.Table();
+  EXPECT_EQ(table.Check(), "--image_path is required");
+  values.path = "x";
+  EXPECT_EQ(table.Check(), "");
+  values.count = -1;
+  EXPECT_EQ(table.Check(), "--Group.count -1: must lie between 1 and 100000");
+  values.count = 1;
+  values.share = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(table.Check(), "--Group.share nan: must lie between 0 and 1");
+}
+
+TEST(OptionTable, ADoubleBindingIsABug) {
+  Values values;
+  OptionTable table = values.Table();
+  EXPECT_THROW(table.Add("Group.flag", &values.flag, "again", "ours"), std::logic_error);
+}
+
+TEST(NaturalLess, CountsAsAPersonDoes) {
+  EXPECT_TRUE(NaturalLess("img2.jpg", "img10.jpg"));
+  EXPECT_FALSE(NaturalLess("img10.jpg", "img2.jpg"));
+  EXPECT_TRUE(NaturalLess("a1/b9", "a1/b10"));
+  EXPECT_TRUE(NaturalLess("a9/b", "a10/a"));
+  EXPECT_TRUE(NaturalLess("img", "img1"));
+  EXPECT_TRUE(NaturalLess("1", "a"));
+  EXPECT_TRUE(NaturalLess("99999999999999999999998", "99999999999999999999999"));
+  EXPECT_TRUE(NaturalLess("a07b2", "a7b10"));
+}
+
+TEST(NaturalLess, IsAStrictTotalOrder) {
+  const std::string names[] = {"",     "0", "00", "7",   "07",  "7a",  "07a", "7a1",
+                               "7a01", "a", "a0", "a00", "a-1", "a/1", "A1",  "10"};
+  for (const std::string& a : names) {
+    EXPECT_FALSE(NaturalLess(a, a));
+    for (const std::string& b : names) {
+      EXPECT_EQ(a != b, NaturalLess(a, b) != NaturalLess(b, a)) << a << " " << b;
+      for (const std::string& c : names) {
+        if (NaturalLess(a, b) && NaturalLess(b, c)) {
+          EXPECT_TRUE(NaturalLess(a, c)) << a << " " << b << " " << c;
+        }
+      }
+    }
+  }
+}
+
+TEST(DurationText, IsShort) {
+  EXPECT_EQ(DurationText(0.04), "0.0 s");
+  EXPECT_EQ(DurationText(42.4), "42 s");
+  EXPECT_EQ(DurationText(185), "3 min 05 s");
+  EXPECT_EQ(DurationText(2 * 3600 + 7 * 60 + 59), "2 h 07 min");
+}
+
+}  // namespace
+}  // namespace colmap_seapoint
