@@ -21,8 +21,8 @@ struct FlowFilterOptions {
 
 // Keeps the matches that at least min_votes of their num_neighbors nearest neighbours (in the first
 // picture, among the matches) vote for: direction within max_angle_deg and norm within
-// max_norm_difference of the larger norm, or the vectors less than min_tolerance pixels apart (ours:
-// at small motion the direction says nothing). Order is kept. O(n log n).
+// max_norm_difference of the larger norm, or the vectors less than min_tolerance pixels apart
+// (ours: at small motion the direction says nothing). Order is kept. O(n log n).
 FeatureMatches FilterFlow(const std::vector<SeaPoint>& points1,
                           const std::vector<SeaPoint>& points2, const FeatureMatches& matches,
                           const FlowFilterOptions& options);

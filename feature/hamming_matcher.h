@@ -10,7 +10,7 @@ namespace colmap_seapoint {
 
 struct HammingMatcherOptions {
   int max_distance = 80;
-  double max_ratio = 0.95;
+  double max_ratio = 1.0;
 
   void Bind(OptionTable* table);
 };

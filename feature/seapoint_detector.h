@@ -18,10 +18,10 @@ struct SeaPointExtractionOptions {
   int min_num_features = 2500;
   int max_num_features = 3000;
   int num_levels = 1;
-  double smoothing_sigma = 1.5;
+  double smoothing_sigma = 2.0;
   int window_size = 7;
   double harris_k = 0.04;
-  int nms_radius = 5;
+  int nms_radius = 0;
 
   void Bind(OptionTable* table);
   // Rules between options: "" or the whole sentence. Ranges are the table's.
@@ -30,8 +30,8 @@ struct SeaPointExtractionOptions {
 
 struct DetectionSummary {
   ThresholdStatus status = ThresholdStatus::kFlat;  // of the finest level
-  double threshold = 0;      // on the 0..255 map of the finest level
-  int num_rounds = 0;        // histograms explored on the finest level
+  double threshold = 0;                             // on the 0..255 map of the finest level
+  int num_rounds = 0;                               // histograms explored on the finest level
   int num_local_maxima = 0;  // candidates after non-maximum suppression, finest level
 };
 

@@ -1,5 +1,5 @@
-// Geometric verification of a pair: E, F and H by robust estimation (OpenCV's USAC), the right COLMAP
-// configuration, and the relative pose refined with Ceres.
+// Geometric verification of a pair: E, F and H by robust estimation (OpenCV's USAC), the right
+// COLMAP configuration, and the relative pose refined with Ceres.
 #pragma once
 
 #include "colmap_seapoint/base/camera.h"

@@ -1,0 +1,73 @@
+#include "feature/extract_features.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "feature/rbrief_descriptor.h"
+
+namespace colmap_seapoint {
+
+namespace {
+
+constexpr double kLevelScale = 1.4142135623730951;  // between neighbouring pyramid levels
+
+GrayImage Resize(const GrayImage& image, int width, int height) {
+  GrayImage resized(width, height);
+  const cv::Mat source(image.height, image.width, CV_8U, const_cast<uint8_t*>(image.data.data()));
+  cv::Mat target(height, width, CV_8U, resized.data.data());
+  cv::resize(source, target, target.size(), 0, 0, cv::INTER_AREA);
+  return resized;
+}
+
+// The target interval's share of a level: proportional to the level's area (paper 4: fewer points
+// at coarser scales).
+SeaPointExtractionOptions LevelOptions(const SeaPointExtractionOptions& options, int level) {
+  double total = 0;
+  for (int l = 0; l < options.num_levels; ++l) total += std::pow(kLevelScale, -2 * l);
+  const double share = std::pow(kLevelScale, -2 * level) / total;
+  SeaPointExtractionOptions at_level = options;
+  at_level.min_num_features = std::max(1, static_cast<int>(options.min_num_features * share));
+  at_level.max_num_features = std::max(1, static_cast<int>(options.max_num_features * share));
+  return at_level;
+}
+
+void Append(const std::vector<SeaPoint>& points, const std::vector<Descriptor>& descriptors,
+            double scale_x, double scale_y, Features* features) {
+  for (SeaPoint point : points) {
+    point.x = static_cast<float>(point.x * scale_x);
+    point.y = static_cast<float>(point.y * scale_y);
+    point.scale = static_cast<float>(std::sqrt(scale_x * scale_y));
+    features->points.push_back(point);
+  }
+  features->descriptors.insert(features->descriptors.end(), descriptors.begin(), descriptors.end());
+}
+
+}  // namespace
+
+ExtractedFeatures ExtractFeatures(const GrayImage& picture, const GrayImage& mask,
+                                  const SeaPointExtractionOptions& options) {
+  ExtractedFeatures result;
+  for (int level = 0; level < options.num_levels; ++level) {
+    const double scale = std::pow(kLevelScale, level);
+    const int width = static_cast<int>(std::lround(picture.width / scale));
+    const int height = static_cast<int>(std::lround(picture.height / scale));
+    if (std::min(width, height) <= 2 * kRBriefBorder) break;
+    const GrayImage level_picture = level == 0 ? GrayImage() : Resize(picture, width, height);
+    const GrayImage level_mask =
+        level == 0 || mask.Empty() ? GrayImage() : Resize(mask, width, height);
+    const GrayImage& grey = level == 0 ? picture : level_picture;
+
+    DetectionSummary summary;
+    std::vector<SeaPoint> points =
+        DetectSeaPoints(grey, level == 0 ? mask : level_mask, LevelOptions(options, level),
+                        kRBriefBorder, &summary);
+    const std::vector<Descriptor> descriptors = DescribeSeaPoints(grey, &points);
+    Append(points, descriptors, static_cast<double>(picture.width) / width,
+           static_cast<double>(picture.height) / height, &result.features);
+    if (level == 0) result.detection = summary;
+  }
+  return result;
+}
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,92 @@
+#include "feature/flow_filter.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <nanoflann.hpp>
+
+namespace colmap_seapoint {
+
+namespace {
+
+// The matches' positions in the first picture, as nanoflann wants them.
+struct MatchPositions {
+  const std::vector<SeaPoint>& points;
+  const FeatureMatches& matches;
+
+  size_t kdtree_get_point_count() const { return matches.size(); }
+  float kdtree_get_pt(size_t i, size_t dim) const {
+    const SeaPoint& point = points[matches[i].idx1];
+    return dim == 0 ? point.x : point.y;
+  }
+  template <typename BoundingBox>
+  bool kdtree_get_bbox(BoundingBox&) const {
+    return false;
+  }
+};
+
+using MatchTree =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, MatchPositions>,
+                                        MatchPositions, 2>;
+
+bool Agree(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const FlowFilterOptions& options,
+           float min_cos) {
+  if ((a - b).norm() < static_cast<float>(options.min_tolerance)) return true;
+  const float norm_a = a.norm(), norm_b = b.norm();
+  if (std::abs(norm_a - norm_b) >
+      static_cast<float>(options.max_norm_difference) * std::max(norm_a, norm_b)) {
+    return false;
+  }
+  return a.dot(b) >= min_cos * norm_a * norm_b;
+}
+
+}  // namespace
+
+void FlowFilterOptions::Bind(OptionTable* table) {
+  const std::string group = "SeaPointMatching.";
+  table->Add(group + "flow_num_neighbors", &num_neighbors,
+             "nearest matches that vote on a match's vector", "ours", 1, 200);
+  table->Add(group + "flow_min_votes", &min_votes, "votes that a match needs", "ours", 0, 200);
+  table->Add(group + "flow_max_angle_deg", &max_angle_deg,
+             "largest difference of direction that still votes, degrees", "ours", 0, 180);
+  table->Add(group + "flow_max_norm_difference", &max_norm_difference,
+             "largest difference of norm that still votes, share of the larger norm", "ours", 0, 1);
+  table->Add(group + "flow_min_tolerance", &min_tolerance,
+             "vectors nearer to each other than this always vote, pixels", "ours", 0, 1000);
+}
+
+FeatureMatches FilterFlow(const std::vector<SeaPoint>& points1,
+                          const std::vector<SeaPoint>& points2, const FeatureMatches& matches,
+                          const FlowFilterOptions& options) {
+  if (matches.empty()) return {};
+  std::vector<Eigen::Vector2f> vectors;
+  vectors.reserve(matches.size());
+  for (const FeatureMatch& match : matches) {
+    const SeaPoint& from = points1[match.idx1];
+    const SeaPoint& to = points2[match.idx2];
+    vectors.emplace_back(to.x - from.x, to.y - from.y);
+  }
+
+  const MatchPositions positions{points1, matches};
+  MatchTree tree(2, positions, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+  tree.buildIndex();
+  const float min_cos = static_cast<float>(std::cos(options.max_angle_deg * M_PI / 180));
+  const size_t num_queried = static_cast<size_t>(options.num_neighbors) + 1;  // itself is one
+  std::vector<uint32_t> neighbors(num_queried);
+  std::vector<float> squared_distances(num_queried);
+
+  FeatureMatches kept;
+  for (size_t i = 0; i < matches.size(); ++i) {
+    const float query[2] = {positions.kdtree_get_pt(i, 0), positions.kdtree_get_pt(i, 1)};
+    const size_t num_found =
+        tree.knnSearch(query, num_queried, neighbors.data(), squared_distances.data());
+    int votes = 0;
+    for (size_t n = 0; n < num_found; ++n) {
+      if (neighbors[n] != i && Agree(vectors[i], vectors[neighbors[n]], options, min_cos)) ++votes;
+    }
+    if (votes >= options.min_votes) kept.push_back(matches[i]);
+  }
+  return kept;
+}
+
+}  // namespace colmap_seapoint
