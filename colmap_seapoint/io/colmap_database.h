@@ -36,18 +36,26 @@ class ColmapDatabase {
   enum class Mode { kReadOnly, kReadWrite, kCreateIfMissing };
 
   // Throws Error: missing file, not a database, damaged (PRAGMA quick_check), locked by another
-  // program (waits up to 10 s), lacking COLMAP's tables or columns, no permission, full disk.
-  ColmapDatabase(const std::filesystem::path& path, Mode mode);
+  // program (waits up to `busy_timeout_ms`), lacking COLMAP's tables or columns, no permission,
+  // full disk.
+  ColmapDatabase(const std::filesystem::path& path, Mode mode, int busy_timeout_ms = 10000);
   ~ColmapDatabase();
   ColmapDatabase(ColmapDatabase&&) noexcept;
+
+  // All methods throw Error when the database is damaged, locked or cannot be written. One thread
+  // at a time may use an object.
 
   // Cameras with models that FindCameraModel does not know are an Error.
   std::map<uint32_t, Camera> ReadCameras() const;
   std::vector<DatabaseImage> ReadImages() const;  // by image_id
   uint32_t AddCamera(const Camera& camera);       // returns camera_id; camera.camera_id is ignored
-  uint32_t AddImage(const std::string& name, uint32_t camera_id);  // returns image_id
+  // Returns image_id. Where the database keeps frames (COLMAP 3.12 and later), the image gets its
+  // frame, and a new camera its rig. Throws Error for a name that IsSafeImageName refuses, a name
+  // that is there already, and a camera that is not.
+  uint32_t AddImage(const std::string& name, uint32_t camera_id);
 
-  // Everything written between Begin and Commit lands together or not at all.
+  // Everything written between Begin and Commit lands together or not at all; without them, each
+  // call does. What was committed survives kill -9 at any moment.
   void BeginTransaction();
   void CommitTransaction();
   void RollbackTransaction();
@@ -59,7 +67,7 @@ class ColmapDatabase {
   // and drops this image's matches and two-view geometries, when they were there (ours changed).
   void WriteFeatures(uint32_t image_id, const Features& features, const std::string& fingerprint);
   // nullopt when the image has no SeaPoints of ours, or its keypoints are not the ones that belong
-  // to our descriptors (other software replaced them).
+  // to our descriptors (other software replaced them). Damaged descriptors are an Error.
   std::optional<Features> ReadFeatures(uint32_t image_id) const;
 
   bool HasMatches(ImagePair pair) const;  // a row in `two_view_geometries`
@@ -67,14 +75,29 @@ class ColmapDatabase {
   // swapped. Unset matrices are NULL. Replaces earlier rows of the pair.
   void WriteMatches(uint32_t image_id1, uint32_t image_id2, const FeatureMatches& raw,
                     const TwoViewGeometry& geometry);
-  // As stored: indices relate to (pair.first, pair.second). Empty when there is no row.
-  FeatureMatches ReadMatches(ImagePair pair) const;                // table `matches`
-  TwoViewGeometry ReadTwoViewGeometry(ImagePair pair) const;       // table `two_view_geometries`
-  std::vector<ImagePair> ReadVerifiedPairs() const;                // rows > 0
+  // As stored: indices relate to (pair.first, pair.second). Empty when there is no row. Indices
+  // that no keypoint has are an Error. Matrices and poses that are NULL, empty or all zero are
+  // unset.
+  FeatureMatches ReadMatches(ImagePair pair) const;           // table `matches`
+  TwoViewGeometry ReadTwoViewGeometry(ImagePair pair) const;  // table `two_view_geometries`
+  std::vector<ImagePair> ReadVerifiedPairs() const;           // rows > 0
 
  private:
-  std::filesystem::path path_;
+  void Open(Mode mode, int busy_timeout_ms);
+  void CheckIntegrity() const;
+  void ReadSchema();
+  bool HasColumn(const std::string& table, const std::string& column) const;
+  bool HasRow(const std::string& sql, int64_t id) const;
+  bool HasRows(const std::string& table) const;
+  void AddFrame(int64_t image_id, int64_t camera_id);
+  void DeleteMatchesOf(int64_t image_id);
+  void CheckIndices(ImagePair pair, const FeatureMatches& matches, const char* table) const;
+
+  std::string path_;
   sqlite3* db_ = nullptr;
+  bool has_descriptor_type_ = false;  // descriptors.type, 4.0 and later
+  bool has_frames_ = false;           // rigs and frames, 3.12 and later
+  bool has_poses_ = false;            // two_view_geometries.qvec and tvec
 };
 
 }  // namespace colmap_seapoint

@@ -25,7 +25,7 @@ std::vector<std::string> ReadImageList(const std::filesystem::path& list_path);
 bool IsSafeImageName(const std::string& name);
 
 struct ImageInfo {
-  int width = 0;   // as stored: the EXIF orientation is not applied, as in COLMAP
+  int width = 0;  // as stored: the EXIF orientation is not applied, as in COLMAP
   int height = 0;
   std::optional<double> focal_length_px;  // from EXIF, by COLMAP's rules, in pixels of this picture
   int exif_orientation = 1;               // 1..8; not 1: the picture is stored turned

@@ -21,7 +21,8 @@ struct CloudPoint {
 };
 
 // Streams points to `path` and `path`.vis; memory does not grow with the cloud. Nothing appears
-// under the final names before Finish(); a writer destroyed earlier leaves no file behind.
+// under the final names before Finish(); a writer destroyed earlier leaves no file behind. Throws
+// Error when a file cannot be created or written.
 class CloudWriter {
  public:
   explicit CloudWriter(const std::filesystem::path& path);
@@ -30,15 +31,18 @@ class CloudWriter {
   void Add(const CloudPoint& point, const uint32_t* image_idxs, uint32_t num_image_idxs);
   void Finish();
   uint64_t NumPoints() const { return num_points_; }
+  uint64_t NumSkipped() const { return num_skipped_; }
 
  private:
   AtomicFile ply_;
   AtomicFile vis_;
   uint64_t num_points_ = 0;
+  uint64_t num_skipped_ = 0;
 };
 
 // Reads the vertices of any binary_little_endian or ASCII PLY with float or double x y z; normals
-// and colours where present. Extra properties are skipped. Throws Error naming file and finding.
+// and colours where present (else zero). Extra properties and elements are skipped. Throws Error
+// naming file and finding: missing, truncated, not a PLY, big-endian, points that are not finite.
 std::vector<CloudPoint> ReadCloud(const std::filesystem::path& path);
 
 }  // namespace colmap_seapoint

@@ -1,0 +1,164 @@
+#include "colmap_seapoint/io/colmap_model.h"
+
+#include <cmath>
+#include <set>
+#include <system_error>
+#include <unordered_map>
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/io/colmap_model_internal.h"
+#include "colmap_seapoint/io/image_file.h"
+
+namespace colmap_seapoint {
+namespace {
+
+constexpr uint64_t kMaxImageSide = 1u << 20;
+constexpr const char* kRemedy =
+    "write the model again with COLMAP (e.g. colmap model_converter) or restore a copy";
+constexpr const char* kFileStems[] = {"cameras", "images", "points3D"};
+
+bool IsFile(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored);
+}
+
+bool HasAllFiles(const std::filesystem::path& dir, const std::string& extension) {
+  for (const char* stem : kFileStems) {
+    if (!IsFile(dir / (stem + extension))) return false;
+  }
+  return true;
+}
+
+[[noreturn]] void FailIncomplete(const std::filesystem::path& dir) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(dir, ignored)) {
+    throw Error(dir.string(), "there is no such folder",
+                "give the folder of a COLMAP model, e.g. sparse/0");
+  }
+  for (const std::string extension : {".bin", ".txt"}) {
+    bool any = false;
+    std::string missing;
+    for (const char* stem : kFileStems) {
+      if (IsFile(dir / (stem + extension))) {
+        any = true;
+      } else if (missing.empty()) {
+        missing = stem + extension;
+      }
+    }
+    if (any) {
+      throw Error((dir / missing).string(), "this file of the model is missing", kRemedy);
+    }
+  }
+  throw Error(dir.string(), "holds no COLMAP model (cameras, images, points3D as .bin or .txt)",
+              "give the folder of a COLMAP model, e.g. sparse/0");
+}
+
+// Ids that point nowhere would be out-of-range reads in every later stage.
+void CheckReferences(const std::filesystem::path& dir, const SparseModel& model) {
+  std::unordered_map<uint32_t, const PosedImage*> images;
+  std::set<std::string> names;
+  auto fail = [&](const std::string& finding) {
+    throw Error(dir.string(), "inconsistent model: " + finding, kRemedy);
+  };
+  for (const PosedImage& image : model.images) {
+    const std::string who = "image " + std::to_string(image.image_id) + " (" + image.name + ")";
+    if (!images.emplace(image.image_id, &image).second) fail(who + " stands there twice");
+    if (!names.insert(image.name).second) fail(who + ": another image has the same name");
+    if (model.cameras.count(image.camera_id) == 0) {
+      fail(who + " has camera " + std::to_string(image.camera_id) + ", which does not exist");
+    }
+    for (const uint64_t point3D_id : image.point3D_ids) {
+      if (point3D_id != kNoPoint3D && model.points3D.count(point3D_id) == 0) {
+        fail(who + " sees point " + std::to_string(point3D_id) + ", which does not exist");
+      }
+    }
+  }
+  for (const auto& [point3D_id, point] : model.points3D) {
+    for (const SparsePoint::TrackElement& element : point.track) {
+      const auto image = images.find(element.image_id);
+      if (image == images.end() || element.point2D_idx >= image->second->points2D.size()) {
+        fail("point " + std::to_string(point3D_id) + " is seen by feature " +
+             std::to_string(element.point2D_idx) + " of image " + std::to_string(element.image_id) +
+             ", which does not exist");
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void RecordPlace::Fail(const std::string& finding) const {
+  throw Error(path_.string(), std::string(unit_) + " " + std::to_string(position_) + ": " + finding,
+              kRemedy);
+}
+
+void AddCamera(const RecordPlace& place, uint32_t camera_id, int model_id, uint64_t width,
+               uint64_t height, std::vector<double> params, SparseModel* model) {
+  const std::string who = "camera " + std::to_string(camera_id);
+  if (width == 0 || height == 0 || width > kMaxImageSide || height > kMaxImageSide) {
+    place.Fail(who + " has an impossible size of " + std::to_string(width) + " x " +
+               std::to_string(height) + " pixels");
+  }
+  for (const double param : params) {
+    if (!std::isfinite(param)) place.Fail(who + " has a parameter that is not finite");
+  }
+  Camera camera;
+  camera.camera_id = camera_id;
+  camera.model = static_cast<CameraModel>(model_id);
+  camera.width = static_cast<int>(width);
+  camera.height = static_cast<int>(height);
+  camera.params = std::move(params);
+  if (camera.FocalX() <= 0 || camera.FocalY() <= 0) {
+    place.Fail(who + " has a focal length that is not positive");
+  }
+  if (!model->cameras.emplace(camera_id, std::move(camera)).second) {
+    place.Fail(who + " stands there twice");
+  }
+}
+
+void AddImage(const RecordPlace& place, const Eigen::Vector4d& qvec, PosedImage image,
+              SparseModel* model) {
+  const std::string who = "image " + std::to_string(image.image_id);
+  if (!IsSafeImageName(image.name)) {
+    place.Fail(who + " is named '" + image.name +
+               "', which is empty, absolute or leads out of the image folder");
+  }
+  if (!qvec.allFinite() || !image.cam_from_world.translation.allFinite() || qvec.norm() < 1e-6) {
+    place.Fail(who + " has a pose that is not finite or no rotation");
+  }
+  image.cam_from_world.rotation =
+      Eigen::Quaterniond(qvec[0], qvec[1], qvec[2], qvec[3]).normalized();
+  for (const Eigen::Vector2d& point : image.points2D) {
+    if (!point.allFinite()) place.Fail(who + " has a feature that is not finite");
+  }
+  model->images.push_back(std::move(image));
+}
+
+void AddPoint(const RecordPlace& place, uint64_t point3D_id, SparsePoint point,
+              SparseModel* model) {
+  const std::string who = "point " + std::to_string(point3D_id);
+  if (point3D_id == kNoPoint3D) place.Fail("a point has the id that means 'none'");
+  if (!point.xyz.allFinite() || !std::isfinite(point.error)) place.Fail(who + " is not finite");
+  if (!model->points3D.emplace(point3D_id, std::move(point)).second) {
+    place.Fail(who + " stands there twice");
+  }
+}
+
+bool IsSparseModel(const std::filesystem::path& dir) {
+  return HasAllFiles(dir, ".bin") || HasAllFiles(dir, ".txt");
+}
+
+SparseModel ReadSparseModel(const std::filesystem::path& dir) {
+  SparseModel model;
+  if (HasAllFiles(dir, ".bin")) {
+    ReadModelBinary(dir, &model);
+  } else if (HasAllFiles(dir, ".txt")) {
+    ReadModelText(dir, &model);
+  } else {
+    FailIncomplete(dir);
+  }
+  CheckReferences(dir, model);
+  return model;
+}
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,38 @@
+// The two forms of a model, and what both check. For colmap_model*.cc only.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "colmap_seapoint/base/sparse_model.h"
+
+namespace colmap_seapoint {
+
+// Where a record stands in its file, for messages: "byte 120" or "line 7".
+class RecordPlace {
+ public:
+  RecordPlace(const std::filesystem::path& path, const char* unit, uint64_t position)
+      : path_(path), unit_(unit), position_(position) {}
+
+  // Throws Error "<path>: <unit> <position>: <finding>; <remedy>".
+  [[noreturn]] void Fail(const std::string& finding) const;
+
+ private:
+  const std::filesystem::path& path_;
+  const char* unit_;
+  uint64_t position_;
+};
+
+// Check one record and add it to the model. Throw Error at `place`.
+void AddCamera(const RecordPlace& place, uint32_t camera_id, int model_id, uint64_t width,
+               uint64_t height, std::vector<double> params, SparseModel* model);
+// qvec: w, x, y, z, normalised here.
+void AddImage(const RecordPlace& place, const Eigen::Vector4d& qvec, PosedImage image,
+              SparseModel* model);
+void AddPoint(const RecordPlace& place, uint64_t point3D_id, SparsePoint point, SparseModel* model);
+
+void ReadModelBinary(const std::filesystem::path& dir, SparseModel* model);
+void ReadModelText(const std::filesystem::path& dir, SparseModel* model);
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,41 @@
+// The header of a PLY file. For ply.cc only.
+#pragma once
+
+#include <cstdint>
+#include <istream>
+#include <string>
+#include <vector>
+
+namespace colmap_seapoint {
+
+enum class PlyType { kInt8, kUInt8, kInt16, kUInt16, kInt32, kUInt32, kFloat32, kFloat64 };
+
+size_t PlyTypeBytes(PlyType type);
+
+struct PlyProperty {
+  std::string name;
+  PlyType type = PlyType::kFloat32;
+  bool is_list = false;
+  PlyType count_type = PlyType::kUInt8;  // of lists
+};
+
+struct PlyElement {
+  std::string name;
+  uint64_t count = 0;
+  std::vector<PlyProperty> properties;
+
+  // Bytes of a row in the binary form, each list counted as an empty one.
+  size_t MinRowBytes() const;
+  bool HasLists() const;
+  int Find(const std::string& property) const;  // -1 when it is not there
+};
+
+struct PlyHeader {
+  bool is_ascii = false;
+  std::vector<PlyElement> elements;
+};
+
+// Reads up to and with "end_header". Throws Error naming `path` and the line.
+PlyHeader ReadPlyHeader(const std::string& path, std::istream* stream);
+
+}  // namespace colmap_seapoint
