@@ -1,0 +1,158 @@
+// demo_survey generate: pictures of a made-up seabed with their exact truth.
+// demo_survey score: a COLMAP model and its dense cloud against that truth.
+#include <boost/program_options.hpp>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/timer.h"
+#include "colmap_seapoint/io/atomic_file.h"
+#include "colmap_seapoint/io/colmap_model.h"
+#include "colmap_seapoint/io/image_file.h"
+#include "colmap_seapoint/io/ply.h"
+#include "examples/survey/score.h"
+#include "examples/survey/survey.h"
+
+namespace colmap_seapoint {
+namespace {
+
+namespace po = boost::program_options;
+
+constexpr char kUsage[] =
+    "demo_survey generate --output_path DIR [options]\n"
+    "demo_survey score --survey_path DIR --input_path MODEL --cloud_path fused.ply [options]\n"
+    "demo_survey <command> -h lists the options.\n";
+
+// False when only help was asked for.
+bool Parse(const po::options_description& description, const std::vector<std::string>& arguments) {
+  po::variables_map values;
+  try {
+    po::store(
+        po::command_line_parser(arguments)
+            .options(description)
+            .positional({})
+            .style(po::command_line_style::default_style & ~po::command_line_style::allow_guessing)
+            .run(),
+        values);
+    if (values.count("help") > 0) {
+      std::cout << description;
+      return false;
+    }
+    po::notify(values);
+  } catch (const po::error& e) {
+    throw UsageError(e.what());
+  }
+  return true;
+}
+
+template <typename T>
+po::typed_value<T>* Default(T* value) {
+  return po::value<T>(value)->default_value(*value);
+}
+
+int Generate(const std::vector<std::string>& arguments) {
+  SurveyOptions o;
+  std::string output_path;
+  po::options_description description("demo_survey generate");
+  auto add = description.add_options();
+  add("help,h", "this text");
+  add("output_path", po::value(&output_path)->required(), "folder to write to");
+  add("seed", Default(&o.seed), "of everything random");
+  add("num_strips", Default(&o.num_strips), "lawn-mower strips");
+  add("images_per_strip", Default(&o.images_per_strip), "pictures a strip");
+  add("width", Default(&o.width), "of a picture, pixels");
+  add("height", Default(&o.height), "of a picture, pixels");
+  add("forward_overlap", Default(&o.forward_overlap), "with the next picture, 0..0.98");
+  add("side_overlap", Default(&o.side_overlap), "with the next strip, 0..0.98");
+  add("altitude", Default(&o.altitude), "above the seabed, metres");
+  add("field_of_view", Default(&o.field_of_view_deg), "horizontal, degrees");
+  add("relief", Default(&o.relief), "factor on the seabed's heights, 0..1.5");
+  add("turbidity", Default(&o.turbidity), "0 clear .. 1 murky");
+  add("caustics", Default(&o.caustics), "0 none .. 1 strong");
+  add("marine_snow", Default(&o.marine_snow), "0 none .. 1 heavy");
+  add("noise", Default(&o.noise), "factor on the sensor noise");
+  add("jitter", Default(&o.jitter), "factor on the vehicle's unsteadiness");
+  add("image_format", Default(&o.image_format), "jpg or png");
+  add("num_threads", Default(&o.num_threads), "-1 = all");
+  if (!Parse(description, arguments)) return 0;
+  const std::string problem = CheckSurveyOptions(o);
+  if (!problem.empty()) throw UsageError(problem);
+
+  const std::filesystem::path dir = output_path;
+  CheckWritableDir(dir / "images");
+  const Timer timer;
+  const SurveyTruth truth = MakeSurveyTruth(o);
+  WriteSurveyTruth(dir, o, truth);
+  size_t num_done = 0;
+  RenderSurvey(o, truth, [&](const PosedImage& image, ColorImage&& picture) {
+    WriteImage(dir / "images" / image.name, picture);
+    std::fprintf(stderr, "\r%zu of %zu pictures", ++num_done, truth.model.images.size());
+  });
+  const double megapixels = 1e-6 * o.width * o.height * static_cast<double>(num_done);
+  std::fprintf(stderr, "\n");
+  std::printf("%zu pictures, %.1f megapixels, gsd %.4f mm, %.1f s (%.2f CPU s/megapixel)\n",
+              num_done, megapixels, 1000 * truth.gsd, timer.WallSeconds(),
+              timer.CpuSeconds() / megapixels);
+  return 0;
+}
+
+int Score(const std::vector<std::string>& arguments) {
+  ScoreOptions o;
+  std::string survey_path, input_path, cloud_path, output_path;
+  po::options_description description("demo_survey score");
+  auto add = description.add_options();
+  add("help,h", "this text");
+  add("survey_path", po::value(&survey_path)->required(), "folder of demo_survey generate");
+  add("input_path", po::value(&input_path)->required(), "estimated COLMAP model");
+  add("cloud_path", po::value(&cloud_path)->required(), "dense cloud in the model's frame, PLY");
+  add("output_path", po::value(&output_path), "JSON to write");
+  add("truth_poses", Default(&o.truth_poses), "1: the model is in the truth's frame already");
+  add("refine", Default(&o.refine),
+      "1: after the alignment by camera centres, fit the cloud to the surface as well");
+  add("num_threads", Default(&o.num_threads), "-1 = all");
+  if (!Parse(description, arguments)) return 0;
+
+  const SurveyTruth truth = ReadSurveyTruth(survey_path);
+  const SparseModel model = ReadSparseModel(input_path);
+  std::vector<Eigen::Vector3f> points;
+  {
+    const std::vector<CloudPoint> cloud = ReadCloud(cloud_path);
+    points.reserve(cloud.size());
+    for (const CloudPoint& point : cloud) points.push_back(point.xyz);
+  }
+  const SurveyScore score = ScoreSurvey(truth, model, std::move(points), o);
+  if (!output_path.empty()) WriteTextFile(output_path, ScoreJson(score));
+  std::cout << ScoreTable(score);
+  return 0;
+}
+
+int Run(const std::vector<std::string>& arguments) {
+  const std::string command = arguments.empty() ? "" : arguments[0];
+  if (command == "-h" || command == "--help" || command == "help") {
+    std::cout << kUsage;
+    return 0;
+  }
+  const std::vector<std::string> rest(arguments.begin() + (arguments.empty() ? 0 : 1),
+                                      arguments.end());
+  if (command == "generate") return Generate(rest);
+  if (command == "score") return Score(rest);
+  throw UsageError(command.empty() ? "no command given" : "unknown command '" + command + "'");
+}
+
+}  // namespace
+}  // namespace colmap_seapoint
+
+int main(int argc, char** argv) {
+  try {
+    return colmap_seapoint::Run(std::vector<std::string>(argv + 1, argv + argc));
+  } catch (const colmap_seapoint::UsageError& e) {
+    std::cerr << colmap_seapoint::kUsage << "demo_survey: " << e.what() << "\n";
+    return 2;
+  } catch (const std::exception& e) {
+    std::cerr << "demo_survey: " << e.what() << "\n";
+    return 1;
+  }
+}

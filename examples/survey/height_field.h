@@ -1,0 +1,67 @@
+// The exact surface: heights on a regular lattice, bilinear between the nodes. That is not an
+// approximation of the truth but its definition: pictures are ray-cast from it, clouds are scored
+// against it.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "examples/survey/noise.h"
+
+namespace colmap_seapoint {
+
+class HeightField {
+ public:
+  HeightField() = default;
+  // `heights`: one a node of `grid`, world z, metres.
+  HeightField(const GridSpec& grid, Field heights);
+
+  const GridSpec& Grid() const { return grid_; }
+  const Field& Heights() const { return heights_; }
+  double CellSize() const { return grid_.step; }
+  double MinX() const { return grid_.X(0); }
+  double MinY() const { return grid_.Y(0); }
+  double MaxX() const { return grid_.X(grid_.nx - 1); }
+  double MaxY() const { return grid_.Y(grid_.ny - 1); }
+  float MinHeight() const { return min_height_; }
+  float MaxHeight() const { return max_height_; }
+  bool Contains(double x, double y) const {
+    return x >= MinX() && y >= MinY() && x <= MaxX() && y <= MaxY();
+  }
+
+  // Outside the field: the height of the nearest place on its edge.
+  double Height(double x, double y) const;
+  // Unit normal (upwards), from central differences: smooth across the cells.
+  Eigen::Vector3d Normal(double x, double y) const;
+
+  // The first t in [t_min, t_max] where origin + t * direction meets the surface. Exact.
+  std::optional<double> IntersectRay(const Eigen::Vector3d& origin,
+                                     const Eigen::Vector3d& direction, double t_min,
+                                     double t_max) const;
+
+  // Distance from the point to the nearest point of the surface; exact below `limit` (metres),
+  // else `limit`. Cost grows with the square of the distance in cells.
+  double Distance(const Eigen::Vector3d& point, double limit) const;
+
+ private:
+  struct Level {  // largest height in every block of `size` x `size` cells
+    int size;
+    int nx;
+    std::vector<float> max;
+  };
+  float Node(int i, int j) const {
+    return heights_[static_cast<size_t>(j) * static_cast<size_t>(grid_.nx) +
+                    static_cast<size_t>(i)];
+  }
+  void BuildLevels();
+  double DistanceToCell(const Eigen::Vector3d& local, int i, int j, double best) const;
+
+  GridSpec grid_;
+  Field heights_;
+  float min_height_ = 0;
+  float max_height_ = 0;
+  std::vector<Level> levels_;  // fine to coarse
+};
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,39 @@
+// The whole survey with its exact truth, in memory and on disk.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "colmap_seapoint/base/image.h"
+#include "colmap_seapoint/base/sparse_model.h"
+#include "examples/survey/height_field.h"
+#include "examples/survey/survey_path.h"
+
+namespace colmap_seapoint {
+
+struct SurveyTruth {
+  SparseModel model;    // exact cameras; some exact points with the pictures that see them
+  HeightField surface;  // exact surface
+  double gsd = 0;       // metres a pixel: mean depth of the surface over mean focal length
+};
+
+// Cameras, surface and points; no picture yet. Throws UsageError for illegal options.
+SurveyTruth MakeSurveyTruth(const SurveyOptions& options);
+
+// Calls `take` with every picture, in order. The same bytes for any number of threads.
+void RenderSurvey(const SurveyOptions& options, const SurveyTruth& truth,
+                  const std::function<void(const PosedImage&, ColorImage&&)>& take);
+
+// Layout of a survey's folder:
+//   images/                 the pictures
+//   truth/sparse/           cameras.txt, images.txt, points3D.txt
+//   truth/surface.bin       heights, float32 little-endian, row by row from min y
+//   truth/surface.json      first node, number of nodes, cell size
+//   truth/survey.json       options and gsd
+void WriteSurveyTruth(const std::filesystem::path& dir, const SurveyOptions& options,
+                      const SurveyTruth& truth);
+
+// Throws Error when the folder is no survey, or is damaged.
+SurveyTruth ReadSurveyTruth(const std::filesystem::path& dir);
+
+}  // namespace colmap_seapoint
