@@ -1,0 +1,24 @@
+#include "colmap_seapoint/commands/automatic_reconstructor.h"
+#include "colmap_seapoint/commands/command.h"
+#include "colmap_seapoint/commands/feature_extractor.h"
+#include "colmap_seapoint/commands/matchers.h"
+#include "colmap_seapoint/commands/partial_densifier.h"
+
+namespace colmap_seapoint {
+
+std::vector<Command> AllCommands() {
+  return {
+      MakeCommand("feature_extractor", "find SeaPoints in pictures, into a COLMAP database",
+                  RunFeatureExtractor),
+      MakeCommand("sequential_matcher", "match each picture with those that follow it",
+                  RunSequentialMatcher),
+      MakeCommand("exhaustive_matcher", "match every picture with every other one",
+                  RunExhaustiveMatcher),
+      MakeCommand("partial_densifier", "COLMAP model and pictures -> one dense cloud",
+                  RunPartialDensifier),
+      MakeCommand("automatic_reconstructor", "a folder of pictures -> dense clouds, all in one",
+                  RunAutomaticReconstructor, "Mapper", &AutomaticReconstructorOptions::mapper),
+  };
+}
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,287 @@
+#include "colmap_seapoint/commands/automatic_reconstructor.h"
+
+#include <filesystem>
+#include <iostream>
+#include <set>
+#include <system_error>
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/commands/feature_extractor.h"
+#include "colmap_seapoint/commands/partial_densifier.h"
+#include "colmap_seapoint/commands/prepare_database.h"
+#include "colmap_seapoint/commands/reconstruction_summary.h"
+#include "colmap_seapoint/commands/run_mapper.h"
+#include "colmap_seapoint/commands/workspace_state.h"
+#include "colmap_seapoint/io/atomic_file.h"
+#include "colmap_seapoint/io/colmap_database.h"
+#include "colmap_seapoint/io/colmap_model.h"
+#include "colmap_seapoint/io/fnv1a.h"
+
+namespace colmap_seapoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+// --matcher auto: up to this many pictures, every pair is tried.
+constexpr size_t kMaxImagesForAllPairs = 50;
+// Raise it whenever the same options give other results than before.
+constexpr char kMatchingVersion[] = "1";
+constexpr char kDensificationVersion[] = "1";
+
+std::string HashText(const std::string& text) { return HashBytes(text.data(), text.size()); }
+
+// One run: the paths of the workspace, what is known so far, and one function a stage.
+class Reconstruction {
+ public:
+  explicit Reconstruction(const AutomaticReconstructorOptions& options)
+      : options_(options),
+        colmap_(FindColmap(options.colmap_path)),
+        mapper_options_(MapperOptions(colmap_, options.run.random_seed, options.mapper)),
+        workspace_(fs::absolute(options.workspace_path).lexically_normal()),
+        image_path_(fs::absolute(options.image_path).lexically_normal()),
+        database_path_(workspace_ / "database.db"),
+        state_(workspace_),
+        report_(StartReport("automatic_reconstructor", options, options.run)) {
+    CheckWritableDir(workspace_ / "report");
+    for (const auto& option : options.mapper) report_.options.push_back(option);
+  }
+
+  void ExtractFeatures();
+  void MatchFeatures();
+  void MapSparsely();
+  void DensifyModels();
+  RunReport WriteReport();
+
+ private:
+  std::string PicturesFingerprint(const std::vector<ReadablePicture>& pictures) const;
+  bool MatchesAllPairs() const;
+  void AddReport(const RunReport& part);
+  void ReadModels();
+  RunReport DensifyOnce(const fs::path& model, const std::string& name);
+  void RemoveStaleClouds(size_t num_models);
+
+  const AutomaticReconstructorOptions& options_;
+  ColmapProgram colmap_;
+  std::map<std::string, std::string> mapper_options_;
+  fs::path workspace_, image_path_, database_path_;
+  WorkspaceState state_;
+  RunReport report_;
+  size_t num_readable_ = 0;
+  std::string mapper_fingerprint_;
+  std::vector<ModelSummary> models_;
+};
+
+bool Reconstruction::MatchesAllPairs() const {
+  if (options_.matcher != "auto") return options_.matcher == "exhaustive";
+  return num_readable_ <= kMaxImagesForAllPairs;
+}
+
+// Of all that decides which rows the database holds, but for the SeaPoints.
+std::string Reconstruction::PicturesFingerprint(
+    const std::vector<ReadablePicture>& pictures) const {
+  std::string text = kMatchingVersion;
+  text += OptionsFingerprint(OptionValues(options_.reader));
+  text += OptionsFingerprint(OptionValues(options_.matching));
+  text += MatchesAllPairs() ? "exhaustive" : OptionsFingerprint(OptionValues(options_.pairs));
+  for (const ReadablePicture& picture : pictures) {
+    const ImageInfo& info = picture.info;
+    text += "\n" + picture.name + " " + std::to_string(info.width) + " " +
+            std::to_string(info.height) + " " + std::to_string(info.focal_length_px.value_or(0)) +
+            " " + info.camera_key;
+  }
+  return HashText(text);
+}
+
+void Reconstruction::AddReport(const RunReport& part) {
+  report_.stages.insert(report_.stages.end(), part.stages.begin(), part.stages.end());
+  for (const auto& left_out : part.left_out) report_.left_out.push_back(left_out);
+}
+
+void Reconstruction::ExtractFeatures() {
+  FeatureExtractorOptions extractor;
+  extractor.database_path = database_path_.string();
+  extractor.image_path = image_path_.string();
+  extractor.reader = options_.reader;
+  extractor.extraction = options_.extraction;
+  extractor.run = options_.run;
+  const auto prepare = [&](const std::vector<ReadablePicture>& pictures) {
+    num_readable_ = pictures.size();
+    PrepareDatabase(database_path_, pictures, options_.reader, PicturesFingerprint(pictures),
+                    &state_);
+  };
+  const RunReport part = ExtractPictures(extractor, prepare);
+  report_.images_in = part.images_in;
+  report_.inputs = part.inputs;
+  AddReport(part);
+}
+
+void Reconstruction::MatchFeatures() {
+  SequentialMatcherOptions sequential;
+  sequential.database_path = database_path_.string();
+  sequential.pairs = options_.pairs;
+  sequential.matching = options_.matching;
+  sequential.run = options_.run;
+  ExhaustiveMatcherOptions exhaustive;
+  exhaustive.database_path = sequential.database_path;
+  exhaustive.matching = options_.matching;
+  exhaustive.run = options_.run;
+  AddReport(MatchesAllPairs() ? MatchExhaustively(exhaustive) : MatchSequentially(sequential));
+  const ColmapDatabase database(database_path_, ColmapDatabase::Mode::kReadWrite);
+  if (!database.ReadVerifiedPairs().empty()) return;
+  throw Error(options_.image_path, "no two of its pictures show the same place",
+              "take pictures that overlap more, or raise --SeaPointExtraction.max_num_features");
+}
+
+void Reconstruction::MapSparsely() {
+  std::string text = DatabaseFingerprint(database_path_) + colmap_.version;
+  for (const DatabaseImage& image :
+       ColmapDatabase(database_path_, ColmapDatabase::Mode::kReadWrite).ReadImages()) {
+    text += image.name;
+  }
+  const auto begun = state_.Read("database");
+  text += begun ? begun->fingerprint : "";
+  text += OptionsFingerprint({mapper_options_.begin(), mapper_options_.end()});
+  mapper_fingerprint_ = HashText(text);
+  const fs::path sparse = workspace_ / "sparse";
+  RunReport part;
+  if (const auto done = state_.ReadIfDone("mapper", mapper_fingerprint_);
+      done && !ListModels(sparse).empty()) {
+    LogInfo("The models in " + sparse.string() + " are there already");
+    part = *done;
+  } else {
+    state_.Forget("mapper");
+    {
+      StageTimer timer(&part, "mapper");
+      RunMapper(colmap_, {database_path_, image_path_, sparse, workspace_ / "report" / "mapper.log",
+                          mapper_options_, static_cast<int>(num_readable_)});
+    }
+    state_.Finish("mapper", mapper_fingerprint_, part);
+  }
+  AddReport(part);
+  ReadModels();
+}
+
+void Reconstruction::ReadModels() {
+  std::set<std::string> registered;
+  for (const fs::path& path : ListModels(workspace_ / "sparse")) {
+    ModelSummary model;
+    model.name = path.filename().string();
+    for (const PosedImage& image : ReadSparseModel(path).images) {
+      model.pictures.push_back(image.name);
+      registered.insert(image.name);
+    }
+    models_.push_back(std::move(model));
+  }
+  report_.images_used = static_cast<int64_t>(registered.size());
+  std::set<std::string> named;
+  for (const auto& left_out : report_.left_out) named.insert(left_out.name);
+  for (const RunReport::Input& input : report_.inputs) {
+    if (registered.count(input.name) > 0 || named.count(input.name) > 0) continue;
+    LeaveOut(input.name, "is in no model: the mapper could not register it", &report_);
+  }
+}
+
+RunReport Reconstruction::DensifyOnce(const fs::path& model, const std::string& name) {
+  PartialDensifierOptions densifier;
+  densifier.image_path = image_path_.string();
+  densifier.input_path = model.string();
+  densifier.output_path = (workspace_ / "dense" / name).string();
+  densifier.database_path = database_path_.string();
+  densifier.densification = options_.densification;
+  densifier.extraction = options_.extraction;
+  densifier.matching = options_.matching;
+  densifier.run = options_.run;
+  const std::string stage = "dense_" + name;
+  const std::string fingerprint =
+      HashText(kDensificationVersion + mapper_fingerprint_ + name +
+               OptionsFingerprint(OptionValues(options_.densification)));
+  const fs::path output = densifier.output_path;
+  auto done = state_.ReadIfDone(stage, fingerprint);
+  if (done && (done->points == 0 || fs::exists(output / "fused.ply"))) {
+    LogInfo("The cloud in " + output.string() + " is there already");
+    return *done;
+  }
+  state_.Forget(stage);
+  RunReport report = DensifyModel(densifier);
+  report.stages.back().name += " " + name;
+  state_.Finish(stage, fingerprint, report);
+  return report;
+}
+
+// Of models that an earlier run had found and this one has not.
+void Reconstruction::RemoveStaleClouds(size_t num_models) {
+  std::error_code error;
+  for (size_t k = num_models; state_.Read("dense_" + std::to_string(k)); ++k) {
+    state_.Forget("dense_" + std::to_string(k));
+    fs::remove_all(workspace_ / "dense" / std::to_string(k), error);
+  }
+}
+
+void Reconstruction::DensifyModels() {
+  CheckWritableDir(workspace_ / "dense");
+  RemoveStaleClouds(models_.size());
+  for (ModelSummary& model : models_) {
+    model.densification = DensifyOnce(workspace_ / "sparse" / model.name, model.name);
+    model.cloud_path = workspace_ / "dense" / model.name / "fused.ply";
+    AddReport(model.densification);
+    report_.pairs += model.densification.pairs;
+    report_.points += model.densification.points;
+    if (model.densification.points > 0) continue;
+    LeaveOut("sparse/" + model.name,
+             "no pair of this model gave a point; see dense/" + model.name + "/pairs.csv",
+             &report_);
+  }
+  if (report_.points > 0) return;
+  throw Error(workspace_.string(), "no pair of any model gave a point",
+              "see why in dense/0/pairs.csv there");
+}
+
+RunReport Reconstruction::WriteReport() {
+  const std::string summary = SummaryText(models_, report_);
+  WriteTextFile(workspace_ / "report" / "summary.txt", summary);
+  WriteRunReport(workspace_ / "report" / "run.json", report_);
+  std::cout << summary << "report: " << (workspace_ / "report").string() << std::endl;
+  return report_;
+}
+
+void Validate(const AutomaticReconstructorOptions& options) {
+  for (const std::string& problem :
+       {options.reader.Check(), options.extraction.Check(), options.densification.Check()}) {
+    if (!problem.empty()) throw UsageError(problem);
+  }
+  if (!fs::is_directory(options.image_path)) {
+    throw Error(options.image_path, "there is no such folder", "check --image_path");
+  }
+}
+
+}  // namespace
+
+void AutomaticReconstructorOptions::Bind(OptionTable* table) {
+  table->AddRequired("image_path", &image_path, "folder of the pictures, sub-folders included");
+  table->AddRequired("workspace_path", &workspace_path,
+                     "folder for database.db, sparse/, dense/ and report/; created when missing");
+  table->Add("colmap_path", &colmap_path, "the colmap program: a path, or a name on PATH", "ours");
+  table->Add("matcher", &matcher,
+             "which pairs are tried; auto = all pairs of up to " +
+                 std::to_string(kMaxImagesForAllPairs) + " pictures, else sequential",
+             "ours", {"auto", "sequential", "exhaustive"});
+  reader.Bind(table);
+  extraction.Bind(table);
+  pairs.Bind(table);
+  matching.Bind(table);
+  densification.Bind(table);
+  run.Bind(table);
+}
+
+ExitCode RunAutomaticReconstructor(const AutomaticReconstructorOptions& options) {
+  Validate(options);
+  Reconstruction reconstruction(options);
+  reconstruction.ExtractFeatures();
+  reconstruction.MatchFeatures();
+  reconstruction.MapSparsely();
+  reconstruction.DensifyModels();
+  return ExitCodeOf(reconstruction.WriteReport());
+}
+
+}  // namespace colmap_seapoint

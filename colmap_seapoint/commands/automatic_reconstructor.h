@@ -1,0 +1,36 @@
+// automatic_reconstructor: a folder of pictures -> SeaPoints -> matches -> colmap mapper -> dense
+// clouds. The same command again goes on where an interrupted run stopped.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "colmap_seapoint/commands/command.h"
+#include "colmap_seapoint/commands/image_reader.h"
+#include "colmap_seapoint/commands/matchers.h"
+#include "colmap_seapoint/commands/run_options.h"
+#include "densify/partial_densification_options.h"
+#include "feature/match_features.h"
+#include "feature/seapoint_detector.h"
+
+namespace colmap_seapoint {
+
+struct AutomaticReconstructorOptions {
+  std::string image_path;
+  std::string workspace_path;
+  std::string colmap_path = "colmap";
+  std::string matcher = "auto";
+  ImageReaderOptions reader;
+  SeaPointExtractionOptions extraction;
+  SequentialPairOptions pairs;
+  SeaPointMatchingOptions matching;
+  std::map<std::string, std::string> mapper;  // "Mapper.<option>" -> value, handed on
+  PartialDensificationOptions densification;
+  RunOptions run;
+
+  void Bind(OptionTable* table);
+};
+
+ExitCode RunAutomaticReconstructor(const AutomaticReconstructorOptions& options);
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,36 @@
+// feature_extractor: pictures -> cameras, images and SeaPoints in the database.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "colmap_seapoint/commands/command.h"
+#include "colmap_seapoint/commands/image_reader.h"
+#include "colmap_seapoint/commands/run_options.h"
+#include "feature/extract_features.h"
+
+namespace colmap_seapoint {
+
+struct FeatureExtractorOptions {
+  std::string database_path;
+  std::string image_path;
+  std::string image_list_path;
+  ImageReaderOptions reader;
+  SeaPointExtractionOptions extraction;
+  RunOptions run;
+
+  void Bind(OptionTable* table);
+};
+
+// Extracts the pictures whose file, mask or options changed, and leaves the others alone.
+// `before_database` sees the readable pictures before the database is opened (or created). Also
+// writes <database>.feature_extractor.run.json. Throws Error when no picture is usable, or when the
+// database holds keypoints of other software for one of them (nothing is written then).
+RunReport ExtractPictures(
+    const FeatureExtractorOptions& options,
+    const std::function<void(const std::vector<ReadablePicture>&)>& before_database = {});
+
+ExitCode RunFeatureExtractor(const FeatureExtractorOptions& options);
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,52 @@
+// The pictures and SeaPoints of a model, for densification.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <unordered_map>
+
+#include "colmap_seapoint/base/sparse_model.h"
+#include "colmap_seapoint/commands/feature_store.h"
+#include "colmap_seapoint/io/colmap_database.h"
+#include "densify/densify_sequence.h"
+#include "feature/extract_features.h"
+#include "feature/match_features.h"
+
+namespace colmap_seapoint {
+
+// `model` outlives it. SeaPoints come from the database, by image name, and are found in the
+// picture when it has none of ours (or is not given).
+class ModelPictures : public PictureSource {
+ public:
+  ModelPictures(const SparseModel& model, const std::filesystem::path& image_path,
+                const std::string& database_path, const SeaPointExtractionOptions& extraction,
+                const SeaPointMatchingOptions& matching);
+
+  // "" when the picture's header is readable and of its camera's size; else the reason. Cheap.
+  std::string Check(int image_idx) const;
+  // How many of the model's pictures have SeaPoints in the database.
+  int NumInDatabase() const { return num_in_database_; }
+
+  ColorImage ReadColor(int image_idx) override;
+  Features ReadSeaPoints(int image_idx) override;
+  FeatureMatches Match(const Features& features1, const Features& features2) override;
+
+ private:
+  const PosedImage& ImageAt(int image_idx) const;
+  std::filesystem::path PathOf(int image_idx) const;
+  // "" or the reason.
+  std::string CheckSize(int image_idx, int width, int height) const;
+
+  const SparseModel& model_;
+  std::filesystem::path image_path_;
+  SeaPointExtractionOptions extraction_;
+  SeaPointMatchingOptions matching_;
+  std::optional<ColmapDatabase> database_;
+  std::optional<FeatureStore> store_;
+  std::unordered_map<std::string, uint32_t> database_ids_;  // of images with SeaPoints
+  int num_in_database_ = 0;
+};
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,161 @@
+#include "colmap_seapoint/commands/partial_densifier.h"
+
+#include <array>
+#include <filesystem>
+#include <set>
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/parallel.h"
+#include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/commands/model_pictures.h"
+#include "colmap_seapoint/commands/pairs_csv.h"
+#include "colmap_seapoint/io/atomic_file.h"
+#include "colmap_seapoint/io/colmap_model.h"
+#include "colmap_seapoint/io/ply.h"
+
+namespace colmap_seapoint {
+namespace {
+
+void Validate(const PartialDensifierOptions& options) {
+  for (const std::string& problem : {options.densification.Check(), options.extraction.Check()}) {
+    if (!problem.empty()) throw UsageError(problem);
+  }
+  if (!std::filesystem::is_directory(options.image_path)) {
+    throw Error(options.image_path, "there is no such folder", "check --image_path");
+  }
+}
+
+// Sees a folder of foreign pictures before hours of work.
+void CheckPictures(const PartialDensifierOptions& options, const SparseModel& model,
+                   const ModelPictures& pictures) {
+  std::string first_problem;
+  for (size_t i = 0; i < model.images.size(); ++i) {
+    const std::string problem = pictures.Check(static_cast<int>(i));
+    if (problem.empty()) return;
+    if (first_problem.empty()) first_problem = model.images[i].name + ": " + problem;
+  }
+  if (model.images.empty()) {
+    throw Error(options.input_path, "the model holds no pictures",
+                "give a model of COLMAP's mapper");
+  }
+  throw Error(options.image_path,
+              "none of the model's " + std::to_string(model.images.size()) +
+                  " pictures can be used (" + first_problem + ")",
+              "give the --image_path that the model was made from");
+}
+
+// The hash of a whole survey takes as long as reading it: on all threads.
+void DescribePictures(const PartialDensifierOptions& options, const SparseModel& model,
+                      RunReport* report) {
+  std::vector<RunReport::Input> inputs(model.images.size());
+  ParallelFor(options.run.num_threads, static_cast<int64_t>(inputs.size()), [&](int64_t i) {
+    const std::string& name = model.images[static_cast<size_t>(i)].name;
+    inputs[static_cast<size_t>(i)] =
+        DescribeInput(name, std::filesystem::path(options.image_path) / name);
+  });
+  report->inputs.insert(report->inputs.end(), inputs.begin(), inputs.end());
+}
+
+// Seconds of each stage over all pairs: wall time on the threads that did the work.
+void LogPairSeconds(const SequenceReport& sequence) {
+  double rectification = 0, propagation = 0;
+  for (const PairReport& pair : sequence.pairs) {
+    rectification += pair.rectification_seconds;
+    propagation += pair.propagation_seconds;
+  }
+  LogDebug("rectification " + DurationText(rectification) + ", propagation " +
+           DurationText(propagation) + " (sums over pairs)");
+}
+
+SequenceReport Densify(const PartialDensifierOptions& options, const SparseModel& model,
+                       ModelPictures* pictures, CloudWriter* cloud) {
+  std::unique_ptr<Progress> progress;
+  const auto sink = [&](const PartialCloud& part) {
+    const std::array<uint32_t, 2> seen_by = {static_cast<uint32_t>(part.image_idx1),
+                                             static_cast<uint32_t>(part.image_idx2)};
+    for (const DensePoint& point : part.points) {
+      cloud->Add({point.xyz, point.normal, point.rgb}, seen_by.data(), 2);
+    }
+  };
+  const auto show = [&](int64_t done, int64_t total) {
+    if (!progress) progress = std::make_unique<Progress>("Densified pictures", total);
+    progress->Update(done);
+  };
+  SequenceReport sequence =
+      DensifySequence(model, pictures, options.densification,
+                      EffectiveNumThreads(options.run.num_threads), sink, show);
+  if (progress) progress->Finish();
+  return sequence;
+}
+
+void FillReport(const SparseModel& model, const SequenceReport& sequence, RunReport* report) {
+  std::set<int> used;
+  for (const PairReport& pair : sequence.pairs) {
+    if (!pair.skipped.empty()) continue;
+    ++report->pairs;
+    used.insert({pair.image_idx1, pair.image_idx2});
+  }
+  for (const LeftOutPicture& picture : sequence.left_out) {
+    LeaveOut(model.images.at(static_cast<size_t>(picture.image_idx)).name, picture.reason, report);
+  }
+  report->images_used = static_cast<int64_t>(used.size());
+}
+
+}  // namespace
+
+void PartialDensifierOptions::Bind(OptionTable* table) {
+  table->AddRequired("image_path", &image_path, "folder of the pictures");
+  table->AddRequired("input_path", &input_path, "COLMAP model, binary or text");
+  table->AddRequired("output_path", &output_path,
+                     "folder for fused.ply, fused.ply.vis, pairs.csv and run.json");
+  table->Add("database_path", &database_path,
+             "COLMAP database with SeaPoints; empty = they are found again", "ours");
+  densification.Bind(table);
+  extraction.Bind(table);
+  matching.Bind(table);
+  run.Bind(table);
+}
+
+RunReport DensifyModel(const PartialDensifierOptions& options) {
+  Validate(options);
+  RunReport report = StartReport("partial_densifier", options, options.run);
+  const std::filesystem::path output = options.output_path;
+  CheckWritableDir(output);
+  SequenceReport sequence;
+  {
+    StageTimer timer(&report, "partial_densifier");
+    const SparseModel model = ReadSparseModel(options.input_path);
+    report.images_in = static_cast<int64_t>(model.images.size());
+    ModelPictures pictures(model, options.image_path, options.database_path, options.extraction,
+                           options.matching);
+    CheckPictures(options, model, pictures);
+    if (!options.database_path.empty() && pictures.NumInDatabase() == 0) {
+      LogWarning(options.database_path +
+                 " holds SeaPoints of no picture of the model: they are "
+                 "found again");
+    }
+    DescribePictures(options, model, &report);
+    CloudWriter cloud(output / "fused.ply");
+    sequence = Densify(options, model, &pictures, &cloud);
+    FillReport(model, sequence, &report);
+    LogPairSeconds(sequence);
+    report.points = static_cast<int64_t>(cloud.NumPoints());
+    WritePairsCsv(output / "pairs.csv", model, sequence);
+    if (report.points > 0) cloud.Finish();
+  }
+  WriteRunReport(output / "run.json", report);
+  if (report.points > 0) {
+    LogInfo(std::to_string(report.points) + " points of " + std::to_string(report.pairs) +
+            " pairs in " + (output / "fused.ply").string());
+  }
+  return report;
+}
+
+ExitCode RunPartialDensifier(const PartialDensifierOptions& options) {
+  const RunReport report = DensifyModel(options);
+  if (report.points > 0) return ExitCodeOf(report);
+  throw Error(options.input_path, "no pair of its pictures gave a point",
+              "see why in " + options.output_path + "/pairs.csv");
+}
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,34 @@
+// partial_densifier: model + pictures -> one fused cloud, each pair adding only what is new.
+#pragma once
+
+#include <string>
+
+#include "colmap_seapoint/commands/command.h"
+#include "colmap_seapoint/commands/run_options.h"
+#include "densify/partial_densification_options.h"
+#include "feature/match_features.h"
+#include "feature/seapoint_detector.h"
+
+namespace colmap_seapoint {
+
+struct PartialDensifierOptions {
+  std::string image_path;
+  std::string input_path;
+  std::string output_path;
+  std::string database_path;
+  PartialDensificationOptions densification;
+  SeaPointExtractionOptions extraction;
+  SeaPointMatchingOptions matching;
+  RunOptions run;
+
+  void Bind(OptionTable* table);
+};
+
+// Writes fused.ply, fused.ply.vis, pairs.csv and run.json into output_path. Throws Error when no
+// picture of the model is readable. When no pair gave a point, the report says 0 points, no cloud
+// is written, and pairs.csv says why.
+RunReport DensifyModel(const PartialDensifierOptions& options);
+
+ExitCode RunPartialDensifier(const PartialDensifierOptions& options);
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,23 @@
+// What automatic_reconstructor leaves in WORKSPACE/report, and says at its end.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "colmap_seapoint/io/run_report.h"
+
+namespace colmap_seapoint {
+
+struct ModelSummary {
+  std::string name;                   // "0"
+  std::vector<std::string> pictures;  // registered
+  RunReport densification;
+  std::filesystem::path cloud_path;
+};
+
+// Plain words: pictures used and left out, models, clouds, times.
+std::string SummaryText(const std::vector<ModelSummary>& models, const RunReport& report);
+
+}  // namespace colmap_seapoint

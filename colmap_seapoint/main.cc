@@ -1,0 +1,83 @@
+// The command table, the only catch of the program, and its exit codes.
+#include <algorithm>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/commands/command.h"
+#include "colmap_seapoint/commands/command_line.h"
+
+namespace {
+
+using namespace colmap_seapoint;
+
+void PrintHelp(const std::vector<Command>& commands, std::ostream& out) {
+  out << "colmap_seapoint " << SEAPOINT_VERSION
+      << ": dense clouds from underwater pictures, an add-on to COLMAP\n\n"
+      << "usage: colmap_seapoint <command> [--project_path FILE.ini] [--option value]...\n\n";
+  size_t width = 0;
+  for (const Command& command : commands) width = std::max(width, command.name.size());
+  for (const Command& command : commands) {
+    out << "  " << command.name << std::string(width + 2 - command.name.size(), ' ')
+        << command.summary << "\n";
+  }
+  out << "\n'colmap_seapoint <command> -h' lists the options of a command.\n"
+      << "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 done but some input was left out.\n";
+}
+
+int RunCommand(const Command& command, const std::vector<std::string>& arguments) {
+  OptionTable table;
+  command.bind(&table);
+  if (!ParseCommandLine(command, arguments, &table)) {
+    PrintCommandHelp(command, table, std::cout);
+    return kDone;
+  }
+  SetLogLevel(static_cast<LogLevel>(*std::get<int*>(table.Find("log_level")->target)));
+  return command.run();
+}
+
+int Run(const std::vector<std::string>& arguments) {
+  const std::vector<Command> commands = AllCommands();
+  if (arguments.empty()) {
+    PrintHelp(commands, std::cerr);
+    throw UsageError("no command is given");
+  }
+  const std::string& name = arguments.front();
+  if (name == "help" || name == "-h" || name == "--help") {
+    PrintHelp(commands, std::cout);
+    return kDone;
+  }
+  if (name == "version" || name == "--version") {
+    std::cout << "colmap_seapoint " << SEAPOINT_VERSION << "\n";
+    return kDone;
+  }
+  for (const Command& command : commands) {
+    if (command.name == name) {
+      return RunCommand(command, {arguments.begin() + 1, arguments.end()});
+    }
+  }
+  throw UsageError("'" + name + "' is no command; 'colmap_seapoint help' lists them");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return Run({argv + 1, argv + argc});
+  } catch (const UsageError& error) {
+    LogError(error.what());
+    return kWrongUsage;
+  } catch (const Error& error) {
+    LogError(error.what());
+  } catch (const std::bad_alloc&) {
+    LogError("memory: not enough for this run; use fewer --num_threads or smaller pictures");
+  } catch (const std::exception& error) {
+    LogError(std::string("internal: ") + error.what() + "; please report this");
+  }
+  return kFailed;
+}
