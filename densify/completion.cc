@@ -1,0 +1,164 @@
+#include "densify/completion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <queue>
+
+#include "densify/rectification.h"
+
+namespace colmap_seapoint {
+
+namespace {
+
+constexpr size_t kMaxCovisible = 12;
+constexpr double kMinGain = 0.015;         // share of a picture's cells that makes a pair worth it
+constexpr double kMinParallaxDeg = 2;
+constexpr double kMaxParallaxDeg = 40;
+constexpr double kRimMargin = 0.01;        // of the partner's sides: no window fits nearer
+
+// Range of the surface in every cell, from the nearest triangulated point of the picture within
+// `reach` pixels; 0 where there is none. Breadth first from the points' cells.
+std::vector<double> PredictRanges(const SparseModel& model, const PosedImage& image,
+                                  const View& view, const CellGrid& grid, double reach) {
+  std::vector<double> range(grid.Size(), 0);
+  std::vector<int> distance(grid.Size(), 0);
+  std::queue<size_t> queue;
+  for (const uint64_t id : image.point3D_ids) {
+    if (id == kNoPoint3D) continue;
+    const Eigen::Vector3d in_cam = view.cam_from_world * model.points3D.at(id).xyz;
+    const auto pixel = view.camera.ImgFromCam(in_cam);
+    if (!pixel || !view.camera.InImage(*pixel)) continue;
+    const size_t cell = grid.IndexOf(pixel->x(), pixel->y());
+    if (range[cell] > 0) continue;
+    range[cell] = in_cam.norm();
+    queue.push(cell);
+  }
+  const int max_distance = static_cast<int>(std::ceil(reach / grid.cell));
+  const size_t width = static_cast<size_t>(grid.width);
+  while (!queue.empty()) {
+    const size_t cell = queue.front();
+    queue.pop();
+    if (distance[cell] >= max_distance) continue;
+    auto spread = [&](size_t to) {
+      if (range[to] > 0) return;
+      range[to] = range[cell];
+      distance[to] = distance[cell] + 1;
+      queue.push(to);
+    };
+    if (cell % width > 0) spread(cell - 1);
+    if (cell % width + 1 < width) spread(cell + 1);
+    if (cell >= width) spread(cell - width);
+    if (cell + width < grid.Size()) spread(cell + width);
+  }
+  return range;
+}
+
+bool SeesWell(const View& view, const Eigen::Vector3d& point) {
+  const auto pixel = view.camera.ImgFromCam(view.cam_from_world * point);
+  if (!pixel) return false;
+  const double x_margin = kRimMargin * view.camera.width;
+  const double y_margin = kRimMargin * view.camera.height;
+  return pixel->x() >= x_margin && pixel->y() >= y_margin &&
+         pixel->x() <= view.camera.width - x_margin && pixel->y() <= view.camera.height - y_margin;
+}
+
+double ParallaxDeg(const Eigen::Vector3d& point, const Eigen::Vector3d& center1,
+                   const Eigen::Vector3d& center2) {
+  const double cosine = (point - center1).normalized().dot((point - center2).normalized());
+  return std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / M_PI;
+}
+
+}  // namespace
+
+std::vector<std::vector<int>> CovisiblePictures(const SparseModel& model,
+                                                const std::vector<int>& order) {
+  std::map<uint32_t, int> position_of;
+  for (size_t position = 0; position < order.size(); ++position) {
+    position_of[model.images[static_cast<size_t>(order[position])].image_id] =
+        static_cast<int>(position);
+  }
+  std::vector<std::map<int, int>> shared(order.size());
+  for (const auto& [id, point] : model.points3D) {
+    for (const auto& a : point.track) {
+      for (const auto& b : point.track) {
+        const auto first = position_of.find(a.image_id), second = position_of.find(b.image_id);
+        if (first == position_of.end() || second == position_of.end() || first == second) continue;
+        ++shared[static_cast<size_t>(first->second)][second->second];
+      }
+    }
+  }
+  std::vector<std::vector<int>> covisible(order.size());
+  for (size_t position = 0; position < order.size(); ++position) {
+    std::vector<std::pair<int, int>> ranked;  // (-shared points, position)
+    for (const auto& [other, count] : shared[position]) ranked.emplace_back(-count, other);
+    std::sort(ranked.begin(), ranked.end());
+    if (ranked.size() > kMaxCovisible) ranked.resize(kMaxCovisible);
+    for (const auto& entry : ranked) covisible[position].push_back(entry.second);
+  }
+  return covisible;
+}
+
+double MedianParallaxDeg(const SparseModel& model, const PosedImage& image1,
+                         const PosedImage& image2) {
+  const Eigen::Vector3d center1 = image1.cam_from_world.OriginInSource();
+  const Eigen::Vector3d center2 = image2.cam_from_world.OriginInSource();
+  std::vector<uint64_t> ids1, ids2, shared;
+  for (const uint64_t id : image1.point3D_ids) {
+    if (id != kNoPoint3D) ids1.push_back(id);
+  }
+  for (const uint64_t id : image2.point3D_ids) {
+    if (id != kNoPoint3D) ids2.push_back(id);
+  }
+  std::sort(ids1.begin(), ids1.end());
+  std::sort(ids2.begin(), ids2.end());
+  std::set_intersection(ids1.begin(), ids1.end(), ids2.begin(), ids2.end(),
+                        std::back_inserter(shared));
+  if (shared.empty()) return 0;
+  std::vector<double> angles;
+  for (const uint64_t id : shared) {
+    angles.push_back(ParallaxDeg(model.points3D.at(id).xyz, center1, center2));
+  }
+  std::nth_element(angles.begin(), angles.begin() + static_cast<long>(angles.size() / 2),
+                   angles.end());
+  return angles[angles.size() / 2];
+}
+
+int SelectCompletionPartner(const SparseModel& model, const PosedImage& image, const View& view,
+                            const ViewCoverage& coverage, double reach,
+                            const std::vector<CompletionCandidate>& candidates) {
+  const CellGrid& grid = coverage.grid;
+  const std::vector<double> range = PredictRanges(model, image, view, grid, 1.5 * reach);
+  const Rigid3d world_from_cam = view.cam_from_world.Inverse();
+  std::vector<Eigen::Vector3d> uncovered;  // world
+  for (size_t cell = 0; cell < grid.Size(); ++cell) {
+    if (coverage.range[cell] > 0 || range[cell] <= 0) continue;
+    const auto ray = view.camera.CamFromImg(grid.Center(cell));
+    if (ray) uncovered.push_back(world_from_cam * (range[cell] * ray->homogeneous().normalized()));
+  }
+  int best = -1;
+  double best_gain = kMinGain * static_cast<double>(grid.Size());
+  const Eigen::Vector3d center1 = view.cam_from_world.OriginInSource();
+  for (const CompletionCandidate& candidate : candidates) {
+    if (!MakePairGeometry(view.camera, view.cam_from_world, candidate.view.camera,
+                          candidate.view.cam_from_world)) {
+      continue;
+    }
+    const Eigen::Vector3d center2 = candidate.view.cam_from_world.OriginInSource();
+    double gain = 0;
+    for (const Eigen::Vector3d& point : uncovered) {
+      const double parallax = ParallaxDeg(point, center1, center2);
+      if (parallax >= kMinParallaxDeg && parallax <= kMaxParallaxDeg &&
+          SeesWell(candidate.view, point)) {
+        gain += 1;
+      }
+    }
+    if (gain > best_gain) {
+      best_gain = gain;
+      best = candidate.position;
+    }
+  }
+  return best;
+}
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,44 @@
+// What is reconstructed already, as a compact summary a pair, and how it looks from another picture
+// (ours; paper 4 names redundancy between non-successive views as a limitation). The poses are
+// known, so a place seen before is recognised wherever and whenever that was.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "colmap_seapoint/base/camera.h"
+#include "colmap_seapoint/base/rigid3.h"
+#include "densify/cell_grid.h"
+
+namespace colmap_seapoint {
+
+// A patch of reconstructed surface, one picture cell large.
+struct SurfacePatch {
+  Eigen::Vector3f center;  // world
+  float size;              // side, world units
+};
+
+// All patches of one partial cloud and the sphere around them.
+struct CloudFootprint {
+  std::vector<SurfacePatch> patches;
+  Eigen::Vector3f center = Eigen::Vector3f::Zero();
+  float radius = 0;
+
+  void UpdateSphere();
+};
+
+// A picture's cells: distance from the camera centre to the surface that is reconstructed there;
+// 0 where nothing is.
+struct ViewCoverage {
+  CellGrid grid;
+  std::vector<float> range;  // world units
+
+  double CoveredShare() const;
+};
+
+// Projects all footprints into a picture; the nearest surface wins. O(patches of footprints whose
+// sphere may be in view).
+ViewCoverage ProjectCoverage(const std::vector<CloudFootprint>& footprints, const Camera& camera,
+                             const Rigid3d& cam_from_world, const CellGrid& grid);
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,53 @@
+#include "densify/densify_sequence.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "colmap_seapoint/base/natural_order.h"
+#include "densify/sequence_state.h"
+
+namespace colmap_seapoint {
+
+namespace {
+
+std::vector<int> SequenceOrder(const SparseModel& model) {
+  std::vector<int> order(model.images.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    return NaturalLess(model.images[static_cast<size_t>(a)].name,
+                       model.images[static_cast<size_t>(b)].name);
+  });
+  return order;
+}
+
+}  // namespace
+
+SequenceReport DensifySequence(const SparseModel& model, PictureSource* source,
+                               const PartialDensificationOptions& options, int num_threads,
+                               const std::function<void(const PartialCloud&)>& sink,
+                               const std::function<void(int64_t, int64_t)>& progress) {
+  SequenceState state(model, SequenceOrder(model), source, options, num_threads, sink);
+  const int num_pictures = state.NumPictures();
+  const int64_t total = num_pictures * (options.completion ? 2 : 1);
+
+  int first = 0;
+  while (first + 1 < num_pictures) {
+    const int second = state.SelectSecond(first);
+    if (second < num_pictures) {
+      state.DensifyNewAreas(first, second);
+      first = state.SelectNextFirst(first, second);
+    } else {
+      ++first;
+    }
+    progress(first, total);
+  }
+  if (options.completion) {
+    for (int position = 0; position < num_pictures; ++position) {
+      state.Complete(position);
+      progress(num_pictures + position + 1, total);
+    }
+  }
+  return state.TakeReport();
+}
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,73 @@
+#include "densify/picture_cache.h"
+
+#include <algorithm>
+
+#include "colmap_seapoint/base/error.h"
+
+namespace colmap_seapoint {
+
+namespace {
+
+GrayImage ToGray(const ColorImage& color) {
+  GrayImage gray(color.width, color.height);
+  const uint8_t* source = color.data.data();
+  for (uint8_t& value : gray.data) {
+    value = static_cast<uint8_t>((77 * source[0] + 150 * source[1] + 29 * source[2] + 128) >> 8);
+    source += 3;
+  }
+  return gray;
+}
+
+}  // namespace
+
+PictureCache::PendingPicture PictureCache::Start(int image_idx) {
+  for (auto entry = pictures_.begin(); entry != pictures_.end(); ++entry) {
+    if (entry->first != image_idx) continue;
+    std::rotate(entry, entry + 1, pictures_.end());
+    return pictures_.back().second;
+  }
+  if (pictures_.size() >= kMaxPictures) pictures_.pop_front();
+  PendingPicture pending = std::async(std::launch::async, [source = source_, image_idx] {
+                             auto picture = std::make_shared<Picture>();
+                             picture->color = source->ReadColor(image_idx);
+                             picture->gray = ToGray(picture->color);
+                             return std::shared_ptr<const Picture>(picture);
+                           }).share();
+  pictures_.emplace_back(image_idx, pending);
+  return pending;
+}
+
+void PictureCache::Prefetch(int image_idx) { Start(image_idx); }
+
+std::shared_ptr<const Picture> PictureCache::Get(int image_idx) {
+  try {
+    return Start(image_idx).get();
+  } catch (const Error& error) {
+    LeaveOut(image_idx, error.Finding());
+    return nullptr;
+  }
+}
+
+std::shared_ptr<const Features> PictureCache::GetSeaPoints(int image_idx) {
+  for (const auto& [idx, features] : features_) {
+    if (idx == image_idx) return features;
+  }
+  auto features = std::make_shared<Features>();
+  try {
+    *features = source_->ReadSeaPoints(image_idx);
+  } catch (const Error& error) {
+    LeaveOut(image_idx, error.Finding());
+  }
+  if (features_.size() >= kMaxFeatures) features_.pop_front();
+  features_.emplace_back(image_idx, features);
+  return features;
+}
+
+void PictureCache::LeaveOut(int image_idx, const std::string& reason) {
+  const bool known =
+      std::any_of(left_out_.begin(), left_out_.end(),
+                  [&](const LeftOutPicture& picture) { return picture.image_idx == image_idx; });
+  if (!known) left_out_.push_back({image_idx, reason});
+}
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,51 @@
+// The few pictures and SeaPoints that the present pair and the next ones need, read ahead in the
+// background. Memory does not grow with the number of pictures.
+#pragma once
+
+#include <deque>
+#include <future>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "colmap_seapoint/base/features.h"
+#include "colmap_seapoint/base/image.h"
+#include "densify/densify_sequence.h"
+
+namespace colmap_seapoint {
+
+struct Picture {
+  ColorImage color;
+  GrayImage gray;  // 0.299 red + 0.587 green + 0.114 blue
+};
+
+class PictureCache {
+ public:
+  explicit PictureCache(PictureSource* source) : source_(source) {}
+
+  // nullptr when the picture cannot be read: the reason goes to LeftOut(), once.
+  std::shared_ptr<const Picture> Get(int image_idx);
+  // Empty features when they cannot be had, and the reason likewise.
+  std::shared_ptr<const Features> GetSeaPoints(int image_idx);
+  // Starts reading in the background, if it is not there or under way.
+  void Prefetch(int image_idx);
+
+  const std::vector<LeftOutPicture>& LeftOut() const { return left_out_; }
+
+ private:
+  using PendingPicture = std::shared_future<std::shared_ptr<const Picture>>;
+  static constexpr size_t kMaxPictures = 5;
+  static constexpr size_t kMaxFeatures = 32;
+
+  PendingPicture Start(int image_idx);
+  void LeaveOut(int image_idx, const std::string& reason);
+
+  PictureSource* const source_;
+  // By image_idx, least recently used first.
+  std::deque<std::pair<int, PendingPicture>> pictures_;
+  std::deque<std::pair<int, std::shared_ptr<const Features>>> features_;
+  std::vector<LeftOutPicture> left_out_;
+};
+
+}  // namespace colmap_seapoint

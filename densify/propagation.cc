@@ -1,0 +1,295 @@
+#include "densify/propagation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+
+#include "colmap_seapoint/base/parallel.h"
+#include "densify/zncc.h"
+
+namespace colmap_seapoint {
+
+namespace {
+
+constexpr int kUnmatched = -1;
+constexpr float kMinImprovement = 0.02f;  // that a colliding region needs to take a sample over
+constexpr int kSeedSearch = 2;            // pixels of disparity around a seed's own
+constexpr int64_t kChunk = 512;           // samples a task
+
+struct Candidate {
+  int disparity = kUnmatched;
+  int seed = -1;
+  float score = -1;
+};
+
+// Scores windows of picture 1 against windows of picture 2 at integer disparities.
+class WindowMatcher {
+ public:
+  WindowMatcher(const RectPicture& picture1, const RectPicture& picture2, int window_size)
+      : picture1_(picture1),
+        picture2_(picture2),
+        size_(window_size),
+        half_(window_size / 2),
+        column_shift_(picture1.window.x0 - picture2.window.x0),
+        row_shift_(picture1.window.y0 - picture2.window.y0) {}
+
+  bool Fits1(int i, int j) const { return Fits(picture1_, i, j); }
+  ZnccReference Reference(int i, int j) const {
+    return ZnccReference(picture1_.gray, i + RectMap::kPadding, j, size_);
+  }
+  float Score(const ZnccReference& reference, int i, int j, int disparity) const {
+    const int i2 = i + column_shift_ - disparity, j2 = j + row_shift_;
+    if (disparity <= 0 || !Fits(picture2_, i2, j2)) return -1;
+    return reference.Score(picture2_.gray, i2 + RectMap::kPadding, j2);
+  }
+
+ private:
+  // The whole window lies in the picture: its four corners do.
+  bool Fits(const RectPicture& picture, int i, int j) const {
+    if (i < half_ || j < half_ || i + half_ >= picture.window.width ||
+        j + half_ >= picture.window.height) {
+      return false;
+    }
+    const uint8_t* top = picture.valid.Row(j - half_) + RectMap::kPadding + i;
+    const uint8_t* bottom = picture.valid.Row(j + half_) + RectMap::kPadding + i;
+    return top[-half_] && top[half_] && bottom[-half_] && bottom[half_];
+  }
+
+  const RectPicture& picture1_;
+  const RectPicture& picture2_;
+  const int size_, half_, column_shift_, row_shift_;
+};
+
+class Propagation {
+ public:
+  Propagation(const RectPicture& picture1, const RectPicture& picture2, const SampleGrid& grid,
+              const std::vector<float>& gate, const PropagationOptions& options, int num_threads)
+      : matcher_(picture1, picture2, options.window_size),
+        grid_(grid),
+        gate_(gate),
+        options_(options),
+        num_threads_(num_threads),
+        search_(std::max(1, (grid.step + 1) / 2)),
+        state_(grid.Size()),
+        generation_(grid.Size(), -1),
+        visited_(grid.Size(), -1) {}
+
+  PartialDisparity Run(const std::vector<Seed>& seeds) {
+    PlantSeeds(seeds);
+    for (int generation = 0; generation < options_.max_generations && !frontier_.empty();
+         ++generation) {
+      const std::vector<int> targets = CollectTargets(generation);
+      const std::vector<Candidate> candidates = ScoreTargets(targets, generation);
+      Commit(targets, candidates, generation + 1);
+    }
+    return Finish(seeds.size());
+  }
+
+ private:
+  // The first generation: every seed at its nearest sample, best of a few disparities.
+  void PlantSeeds(const std::vector<Seed>& seeds) {
+    std::vector<int> targets(seeds.size(), -1);
+    std::vector<Candidate> candidates(seeds.size());
+    ParallelFor(num_threads_, static_cast<int64_t>(seeds.size()), [&](int64_t s) {
+      const Seed& seed = seeds[static_cast<size_t>(s)];
+      const int a = static_cast<int>(std::floor((seed.x - grid_.window.x0) / grid_.step));
+      const int b = static_cast<int>(std::floor((seed.y - grid_.window.y0) / grid_.step));
+      if (a < 0 || b < 0 || a >= grid_.width || b >= grid_.height) return;
+      const int center = static_cast<int>(std::lround(seed.disparity));
+      std::vector<int> disparities;
+      for (int d = -kSeedSearch; d <= kSeedSearch; ++d) disparities.push_back(center + d);
+      targets[static_cast<size_t>(s)] = b * grid_.width + a;
+      candidates[static_cast<size_t>(s)] =
+          Best(b * grid_.width + a, disparities.data(), static_cast<int>(disparities.size()));
+      candidates[static_cast<size_t>(s)].seed = static_cast<int>(s);
+    });
+    std::vector<int> planted;
+    std::vector<Candidate> planted_candidates;
+    for (size_t s = 0; s < seeds.size(); ++s) {
+      if (targets[s] < 0) continue;
+      planted.push_back(targets[s]);
+      planted_candidates.push_back(candidates[s]);
+    }
+    Commit(planted, planted_candidates, 0);
+  }
+
+  template <typename Visit>
+  void ForEachNeighbor(int node, const Visit& visit) const {
+    const int a = node % grid_.width, b = node / grid_.width;
+    if (b > 0) visit(node - grid_.width);
+    if (a > 0) visit(node - 1);
+    if (a + 1 < grid_.width) visit(node + 1);
+    if (b + 1 < grid_.height) visit(node + grid_.width);
+  }
+
+  // Neighbours of the frontier that are free, or that another region holds at another disparity.
+  std::vector<int> CollectTargets(int generation) {
+    std::vector<int> targets;
+    for (const int node : frontier_) {
+      const int disparity = state_[static_cast<size_t>(node)].disparity;
+      ForEachNeighbor(node, [&](int neighbor) {
+        const size_t n = static_cast<size_t>(neighbor);
+        if (visited_[n] == generation || gate_[n] == SampleGate::kClosed) return;
+        const int held = state_[n].disparity;
+        if (held != kUnmatched && std::abs(held - disparity) <= search_) return;
+        visited_[n] = generation;
+        targets.push_back(neighbor);
+      });
+    }
+    return targets;
+  }
+
+  std::vector<Candidate> ScoreTargets(const std::vector<int>& targets, int generation) const {
+    std::vector<Candidate> candidates(targets.size());
+    const int64_t count = static_cast<int64_t>(targets.size());
+    ParallelFor(num_threads_, (count + kChunk - 1) / kChunk, [&](int64_t chunk) {
+      const int64_t end = std::min(count, (chunk + 1) * kChunk);
+      for (int64_t t = chunk * kChunk; t < end; ++t) {
+        candidates[static_cast<size_t>(t)] =
+            BestFromNeighbors(targets[static_cast<size_t>(t)], generation);
+      }
+    });
+    return candidates;
+  }
+
+  Candidate BestFromNeighbors(int target, int generation) const {
+    std::array<int, 4 * 65> disparities;
+    int count = 0;
+    const int held = state_[static_cast<size_t>(target)].disparity;
+    ForEachNeighbor(target, [&](int neighbor) {
+      const size_t n = static_cast<size_t>(neighbor);
+      if (generation_[n] != generation) return;
+      for (int d = state_[n].disparity - search_; d <= state_[n].disparity + search_; ++d) {
+        int* const end = disparities.data() + count;
+        if (d == held || std::find(disparities.data(), end, d) != end) continue;
+        disparities[static_cast<size_t>(count++)] = d;
+      }
+    });
+    Candidate best = Best(target, disparities.data(), count);
+    if (best.disparity == kUnmatched) return best;
+    int nearest = 1 << 30;
+    ForEachNeighbor(target, [&](int neighbor) {
+      const Candidate& from = state_[static_cast<size_t>(neighbor)];
+      if (generation_[static_cast<size_t>(neighbor)] != generation) return;
+      if (std::abs(from.disparity - best.disparity) >= nearest) return;
+      nearest = std::abs(from.disparity - best.disparity);
+      best.seed = from.seed;
+    });
+    return best;
+  }
+
+  Candidate Best(int target, const int* disparities, int count) const {
+    Candidate best;
+    const int i = grid_.PixelX(target % grid_.width), j = grid_.PixelY(target / grid_.width);
+    const float gate = gate_[static_cast<size_t>(target)];
+    if (gate == SampleGate::kClosed || !matcher_.Fits1(i, j)) return best;
+    const ZnccReference reference = matcher_.Reference(i, j);
+    if (!reference.HasTexture()) return best;
+    for (int c = 0; c < count; ++c) {
+      if (!SampleGate::Admits(gate, static_cast<float>(disparities[c]))) continue;
+      const float score = matcher_.Score(reference, i, j, disparities[c]);
+      if (score > best.score) {
+        best.score = score;
+        best.disparity = disparities[c];
+      }
+    }
+    if (best.score < options_.min_zncc) best.disparity = kUnmatched;
+    return best;
+  }
+
+  // Where regions collide, the better score wins.
+  void Commit(const std::vector<int>& targets, const std::vector<Candidate>& candidates,
+              int generation) {
+    frontier_.clear();
+    for (size_t t = 0; t < targets.size(); ++t) {
+      const Candidate& candidate = candidates[t];
+      const size_t node = static_cast<size_t>(targets[t]);
+      Candidate& held = state_[node];
+      if (candidate.disparity == kUnmatched) continue;
+      if (held.disparity != kUnmatched && candidate.score < held.score + kMinImprovement) continue;
+      held = candidate;
+      if (generation_[node] != generation) frontier_.push_back(targets[t]);
+      generation_[node] = generation;
+    }
+  }
+
+  PartialDisparity Finish(size_t num_seeds) const {
+    PartialDisparity partial;
+    partial.grid = grid_;
+    partial.disparity.assign(grid_.Size(), 0);
+    partial.score.assign(grid_.Size(), -1);
+    partial.seed_sizes.assign(num_seeds, 0);
+    for (const Candidate& candidate : state_) {
+      if (candidate.disparity != kUnmatched) {
+        ++partial.seed_sizes[static_cast<size_t>(candidate.seed)];
+      }
+    }
+    ParallelFor(num_threads_, grid_.height, [&](int64_t b) {
+      for (int a = 0; a < grid_.width; ++a) {
+        const size_t node = static_cast<size_t>(b) * static_cast<size_t>(grid_.width) +
+                            static_cast<size_t>(a);
+        if (state_[node].disparity != kUnmatched) RefineSubPixel(node, &partial);
+      }
+    });
+    return partial;
+  }
+
+  // Climbs to the local maximum (at most 2 pixels), then takes the top of the parabola through it
+  // and its neighbours; without a maximum the sample stays unmatched.
+  void RefineSubPixel(size_t node, PartialDisparity* partial) const {
+    const int i = grid_.PixelX(static_cast<int>(node) % grid_.width);
+    const int j = grid_.PixelY(static_cast<int>(node) / grid_.width);
+    const ZnccReference reference = matcher_.Reference(i, j);
+    int disparity = state_[node].disparity;
+    float here = state_[node].score;
+    for (int climb = 0; climb <= 2; ++climb) {
+      const float less = matcher_.Score(reference, i, j, disparity - 1);
+      const float more = matcher_.Score(reference, i, j, disparity + 1);
+      if (less <= here && more <= here) {
+        if (less <= -1 || more <= -1) return;
+        const float curvature = less - 2 * here + more;
+        const float offset = curvature < 0 ? 0.5f * (less - more) / curvature : 0.0f;
+        partial->disparity[node] = static_cast<float>(disparity) + offset;
+        partial->score[node] = here;
+        return;
+      }
+      here = std::max(less, more);
+      disparity += less > more ? -1 : 1;
+    }
+  }
+
+  const WindowMatcher matcher_;
+  const SampleGrid grid_;
+  const std::vector<float>& gate_;
+  const PropagationOptions options_;
+  const int num_threads_;
+  const int search_;  // disparities tried around a neighbour's, pixels
+  std::vector<Candidate> state_;
+  std::vector<int> generation_;  // in which a sample was last matched
+  std::vector<int> visited_;     // generation that last collected it as a target
+  std::vector<int> frontier_;
+};
+
+}  // namespace
+
+SampleGrid::SampleGrid(const RectWindow& rect_window, int sample_step)
+    : window(rect_window),
+      step(sample_step),
+      width(rect_window.width / sample_step),
+      height(rect_window.height / sample_step) {}
+
+bool SampleGate::Admits(float gate, float disparity) {
+  if (gate == kOpen) return true;
+  if (gate == kClosed) return false;
+  return std::abs(disparity - gate) > 4 + 0.04f * gate;
+}
+
+PartialDisparity Propagate(const RectPicture& picture1, const RectPicture& picture2,
+                           const SampleGrid& grid, const std::vector<float>& gate,
+                           const std::vector<Seed>& seeds, const PropagationOptions& options,
+                           int num_threads) {
+  return Propagation(picture1, picture2, grid, gate, options, num_threads).Run(seeds);
+}
+
+}  // namespace colmap_seapoint

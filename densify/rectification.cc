@@ -1,0 +1,177 @@
+#include "densify/rectification.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "colmap_seapoint/base/parallel.h"
+
+namespace colmap_seapoint {
+
+namespace {
+
+constexpr double kMinAngleToBaselineDeg = 40;  // between a viewing direction and the baseline
+constexpr double kMaxSlope = 3.0;              // |x / z| of a rect ray that is still used
+
+std::optional<Eigen::Vector2d> RectFromPixel(const Camera& camera,
+                                             const Eigen::Matrix3d& cam_from_rect, double focal,
+                                             const Eigen::Vector2d& pixel) {
+  const auto ray = camera.CamFromImg(pixel);
+  if (!ray) return std::nullopt;
+  const Eigen::Vector3d in_rect = cam_from_rect.transpose() * ray->homogeneous();
+  if (!(in_rect.z() > 1e-3 * in_rect.norm())) return std::nullopt;
+  return Eigen::Vector2d(focal * in_rect.hnormalized());
+}
+
+}  // namespace
+
+std::optional<Eigen::Vector2d> PairGeometry::RectFromPixel1(const Eigen::Vector2d& pixel) const {
+  return RectFromPixel(camera1, cam1_from_rect, focal, pixel);
+}
+
+std::optional<Eigen::Vector2d> PairGeometry::RectFromPixel2(const Eigen::Vector2d& pixel) const {
+  return RectFromPixel(camera2, cam2_from_rect, focal, pixel);
+}
+
+Eigen::Vector3d PairGeometry::PointInWorld(double x, double y, double disparity) const {
+  const double depth = focal * baseline / disparity;
+  return world_from_rect * (depth * Eigen::Vector3d(x / focal, y / focal, 1)) + center1;
+}
+
+std::optional<PairGeometry> MakePairGeometry(const Camera& camera1, const Rigid3d& cam1_from_world,
+                                             const Camera& camera2,
+                                             const Rigid3d& cam2_from_world) {
+  const Eigen::Vector3d center1 = cam1_from_world.OriginInSource();
+  const Eigen::Vector3d center2 = cam2_from_world.OriginInSource();
+  const Eigen::Vector3d view1 = cam1_from_world.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d view2 = cam2_from_world.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+
+  PairGeometry geometry;
+  geometry.baseline = (center2 - center1).norm();
+  if (!(geometry.baseline > 1e-9)) return std::nullopt;
+  const Eigen::Vector3d x_axis = (center2 - center1) / geometry.baseline;
+  const double max_cos = std::cos(kMinAngleToBaselineDeg * M_PI / 180);
+  if (std::abs(x_axis.dot(view1)) > max_cos || std::abs(x_axis.dot(view2)) > max_cos) {
+    return std::nullopt;
+  }
+  const Eigen::Vector3d view = view1 + view2;
+  const Eigen::Vector3d across = view - x_axis.dot(view) * x_axis;
+  if (!(across.norm() > 0.2)) return std::nullopt;
+  const Eigen::Vector3d z_axis = across.normalized();
+  geometry.world_from_rect.col(0) = x_axis;
+  geometry.world_from_rect.col(1) = z_axis.cross(x_axis);
+  geometry.world_from_rect.col(2) = z_axis;
+
+  geometry.camera1 = camera1;
+  geometry.camera2 = camera2;
+  geometry.center1 = center1;
+  geometry.focal = camera1.MeanFocal();
+  geometry.cam1_from_rect = cam1_from_world.rotation * geometry.world_from_rect;
+  geometry.cam2_from_rect = cam2_from_world.rotation * geometry.world_from_rect;
+  return geometry;
+}
+
+RectWindow WindowOfPicture(const PairGeometry& geometry, bool second) {
+  const Camera& camera = second ? geometry.camera2 : geometry.camera1;
+  constexpr int kSamples = 32;
+  const double limit = kMaxSlope * geometry.focal;
+  double x_min = limit, x_max = -limit, y_min = limit, y_max = -limit;
+  for (int j = 0; j <= kSamples; ++j) {
+    for (int i = 0; i <= kSamples; ++i) {
+      const Eigen::Vector2d pixel(static_cast<double>(camera.width) * i / kSamples,
+                                  static_cast<double>(camera.height) * j / kSamples);
+      const auto rect =
+          second ? geometry.RectFromPixel2(pixel) : geometry.RectFromPixel1(pixel);
+      if (!rect) continue;
+      const double x = std::clamp(rect->x(), -limit, limit);
+      const double y = std::clamp(rect->y(), -limit, limit);
+      x_min = std::min(x_min, x);
+      x_max = std::max(x_max, x);
+      y_min = std::min(y_min, y);
+      y_max = std::max(y_max, y);
+    }
+  }
+  RectWindow window;
+  window.x0 = static_cast<int>(std::floor(x_min));
+  window.y0 = static_cast<int>(std::floor(y_min));
+  window.width = std::max(0, static_cast<int>(std::ceil(x_max)) - window.x0);
+  window.height = std::max(0, static_cast<int>(std::ceil(y_max)) - window.y0);
+  return window;
+}
+
+RectMap::RectMap(const PairGeometry& geometry, bool second, const RectWindow& window,
+                 int num_threads)
+    : window_(window) {
+  const Camera& camera = second ? geometry.camera2 : geometry.camera1;
+  const Eigen::Matrix3d& cam_from_rect =
+      second ? geometry.cam2_from_rect : geometry.cam1_from_rect;
+  source_width_ = camera.width;
+  source_height_ = camera.height;
+  nodes_x_ = window.width / kCell + 2;
+  nodes_y_ = window.height / kCell + 2;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  nodes_.assign(static_cast<size_t>(nodes_x_) * static_cast<size_t>(nodes_y_),
+                Eigen::Vector2f(nan, nan));
+  ParallelFor(num_threads, nodes_y_, [&](int64_t row) {
+    const double y = window.y0 + 0.5 + static_cast<double>(row) * kCell;
+    for (int column = 0; column < nodes_x_; ++column) {
+      const double x = window.x0 + 0.5 + static_cast<double>(column) * kCell;
+      const auto pixel =
+          camera.ImgFromCam(cam_from_rect * Eigen::Vector3d(x, y, geometry.focal));
+      // Far outside, distortion polynomials fold back: only rays that the camera really has.
+      if (!pixel || pixel->x() < -camera.width || pixel->x() > 2 * camera.width ||
+          pixel->y() < -camera.height || pixel->y() > 2 * camera.height) {
+        continue;
+      }
+      nodes_[static_cast<size_t>(row) * static_cast<size_t>(nodes_x_) +
+             static_cast<size_t>(column)] = pixel->cast<float>();
+    }
+  });
+}
+
+std::optional<Eigen::Vector2f> RectMap::Source(int i, int j) const {
+  const Eigen::Vector2f* node = nodes_.data() +
+                                static_cast<size_t>(j / kCell) * static_cast<size_t>(nodes_x_) +
+                                static_cast<size_t>(i / kCell);
+  const float u = static_cast<float>(i % kCell) / kCell, v = static_cast<float>(j % kCell) / kCell;
+  const Eigen::Vector2f source = (1 - v) * ((1 - u) * node[0] + u * node[1]) +
+                                 v * ((1 - u) * node[nodes_x_] + u * node[nodes_x_ + 1]);
+  // The comparison is false for NaN too.
+  if (!(source.x() >= 0.5f && source.y() >= 0.5f && source.x() < static_cast<float>(source_width_) - 0.5f &&
+        source.y() < static_cast<float>(source_height_) - 0.5f)) {
+    return std::nullopt;
+  }
+  return source;
+}
+
+void RectMap::Rectify(const GrayImage& source, int num_threads, GrayImage* gray,
+                      GrayImage* valid) const {
+  *gray = GrayImage(window_.width + 2 * kPadding, window_.height);
+  *valid = GrayImage(window_.width + 2 * kPadding, window_.height);
+  ParallelFor(num_threads, (window_.height + kCell - 1) / kCell, [&](int64_t band) {
+    const int begin = static_cast<int>(band) * kCell;
+    const int end = std::min(window_.height, begin + kCell);
+    for (int j = begin; j < end; ++j) {
+      uint8_t* gray_row = gray->Row(j) + kPadding;
+      uint8_t* valid_row = valid->Row(j) + kPadding;
+      for (int i = 0; i < window_.width; ++i) {
+        const auto position = Source(i, j);
+        if (!position) continue;
+        const float x = position->x() - 0.5f, y = position->y() - 0.5f;
+        const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
+        const int u = static_cast<int>(256 * (x - static_cast<float>(x0)));
+        const int v = static_cast<int>(256 * (y - static_cast<float>(y0)));
+        const uint8_t* top = source.Row(y0) + x0;
+        const uint8_t* bottom = source.Row(std::min(y0 + 1, source.height - 1)) + x0;
+        const int right = x0 + 1 < source.width ? 1 : 0;
+        const int value = (256 - v) * ((256 - u) * top[0] + u * top[right]) +
+                          v * ((256 - u) * bottom[0] + u * bottom[right]);
+        gray_row[i] = static_cast<uint8_t>((value + (1 << 15)) >> 16);
+        valid_row[i] = 1;
+      }
+    }
+  });
+}
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,284 @@
+#include "densify/sequence_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "colmap_seapoint/base/timer.h"
+#include "densify/completion.h"
+#include "densify/pair_selection.h"
+
+namespace colmap_seapoint {
+
+namespace {
+
+constexpr int kMaxSecondTries = 4;          // pictures tried as the second one of a pair
+constexpr double kMinParallaxDeg = 1.0;     // ours: motion can be mere rotation
+
+std::pair<int, int> Ordered(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
+
+}  // namespace
+
+SequenceState::SequenceState(const SparseModel& model, std::vector<int> order,
+                             PictureSource* source, const PartialDensificationOptions& options,
+                             int num_threads, std::function<void(const PartialCloud&)> sink)
+    : model_(model),
+      order_(std::move(order)),
+      options_(options),
+      num_threads_(num_threads),
+      sink_(std::move(sink)),
+      source_(source),
+      cache_(source),
+      covisible_(CovisiblePictures(model, order_)) {}
+
+const PosedImage& SequenceState::ImageAt(int position) const {
+  return model_.images[static_cast<size_t>(ImageIdxAt(position))];
+}
+
+View SequenceState::ViewAt(int position) const {
+  const PosedImage& image = ImageAt(position);
+  return {ImageIdxAt(position), model_.cameras.at(image.camera_id), image.cam_from_world};
+}
+
+double SequenceState::LongerSide(int position) const {
+  const Camera& camera = model_.cameras.at(ImageAt(position).camera_id);
+  return std::max(camera.width, camera.height);
+}
+
+CellGrid SequenceState::CellsAt(int position) const {
+  return CellsOf(model_.cameras.at(ImageAt(position).camera_id), options_);
+}
+
+std::shared_ptr<const Features> SequenceState::SeaPointsAt(int position) {
+  return cache_.GetSeaPoints(ImageIdxAt(position));
+}
+
+FeatureMatches SequenceState::Match(int position1, int position2) {
+  return source_->Match(*SeaPointsAt(position1), *SeaPointsAt(position2));
+}
+
+int SequenceState::SelectSecond(int first) {
+  PairReport report = NewReport(first, -1, "sequence");
+  if (!cache_.Get(ImageIdxAt(first))) {
+    report.skipped = "the picture cannot be read";
+    report_.pairs.push_back(report);
+    return NumPictures();
+  }
+  report.skipped = "no following picture matches it";
+  const int end = std::min(NumPictures(), first + 1 + kMaxSecondTries);
+  for (int second = first + 1; second < end; ++second) {
+    if (!cache_.Get(ImageIdxAt(second))) continue;
+    const FeatureMatches matches = Match(first, second);
+    if (static_cast<int>(matches.size()) < options_.min_num_seeds) continue;
+    const double motion = MeanMotion(SeaPointsAt(first)->points, SeaPointsAt(second)->points,
+                                     matches, LongerSide(first));
+    if (motion >= options_.min_mean_motion &&
+        MedianParallaxDeg(model_, ImageAt(first), ImageAt(second)) >= kMinParallaxDeg) {
+      return second;
+    }
+    report.skipped = "the viewpoint hardly changes in the pictures that follow";
+  }
+  report_.pairs.push_back(report);
+  return NumPictures();
+}
+
+double SequenceState::InterpairOverlap(int first, int candidate) {
+  const auto points = SeaPointsAt(candidate);
+  const FeatureMatches matches = Match(first, candidate);
+  const std::vector<SeaPointLabel>& labels = previous_labels_;
+  const double radius = options_.influence_radius * LongerSide(candidate);
+  return MakeInfluenceMask(CellsAt(candidate), points->points, matches, labels, radius)
+      .OverlapRate();
+}
+
+int SequenceState::SelectNextFirst(int first, int second) {
+  for (int ahead = 1; ahead <= 2 && second + ahead < NumPictures(); ++ahead) {
+    cache_.Prefetch(ImageIdxAt(second + ahead));
+  }
+  const int next = colmap_seapoint::SelectNextFirst(
+      second, NumPictures(), options_.max_overlap,
+      [&](int candidate) { return InterpairOverlap(first, candidate); });
+  for (int skipped = second + 1; skipped < std::min(next, NumPictures() - 1); ++skipped) {
+    PairReport report = NewReport(skipped, -1, "sequence");
+    report.skipped = "overlaps too much with the pair before";
+    report_.pairs.push_back(report);
+  }
+  return next;
+}
+
+SequenceState::Overlap SequenceState::AssessOverlap(int first) {
+  Overlap overlap;
+  const auto points = SeaPointsAt(first);
+  const CellGrid cells = CellsAt(first);
+  const double radius = options_.influence_radius * LongerSide(first);
+  overlap.labels.assign(points->points.size(), SeaPointLabel::kNA);
+  if (previous_first_ >= 0) {
+    const FeatureMatches matches = Match(previous_first_, first);
+    const InfluenceMask mask =
+        MakeInfluenceMask(cells, points->points, matches, previous_labels_, radius);
+    overlap.labels =
+        LabelSeaPoints(mask, points->points, matches, previous_labels_, radius);
+    overlap.rate = mask.OverlapRate();
+    overlap.closed = mask.marked;
+  }
+  if (options_.redundancy == "all") {
+    const View view = ViewAt(first);
+    const ViewCoverage coverage =
+        ProjectCoverage(footprints_, view.camera, view.cam_from_world, cells);
+    for (size_t i = 0; i < overlap.labels.size(); ++i) {
+      const SeaPoint& point = points->points[i];
+      const bool covered = coverage.range[cells.IndexOf(point.x, point.y)] > 0;
+      if (covered) overlap.labels[i] = SeaPointLabel::kOA;
+      if (!covered && overlap.labels[i] == SeaPointLabel::kOA) {
+        overlap.labels[i] = SeaPointLabel::kREA;
+      }
+    }
+    overlap.rate = coverage.CoveredShare();
+    overlap.covered_range = coverage.range;
+    overlap.closed.clear();
+  }
+  return overlap;
+}
+
+std::vector<PixelPair> SequenceState::SeedsFromMatches(int first, int second,
+                                                       const std::vector<SeaPointLabel>& labels) {
+  const auto points1 = SeaPointsAt(first), points2 = SeaPointsAt(second);
+  std::vector<PixelPair> seeds;
+  for (const FeatureMatch& match : Match(first, second)) {
+    if (!labels.empty() && labels[match.idx1] == SeaPointLabel::kOA) continue;
+    const SeaPoint& a = points1->points[match.idx1];
+    const SeaPoint& b = points2->points[match.idx2];
+    seeds.push_back({{a.x, a.y}, {b.x, b.y}});
+  }
+  return seeds;
+}
+
+// Ours: the model's triangulated points are seeds too; their projections obey the poses exactly.
+void SequenceState::AppendModelSeeds(int first, int second, std::vector<PixelPair>* seeds) const {
+  const View view1 = ViewAt(first), view2 = ViewAt(second);
+  for (const uint64_t id : ImageAt(first).point3D_ids) {
+    if (id == kNoPoint3D) continue;
+    const Eigen::Vector3d& xyz = model_.points3D.at(id).xyz;
+    const auto pixel1 = view1.camera.ImgFromCam(view1.cam_from_world * xyz);
+    const auto pixel2 = view2.camera.ImgFromCam(view2.cam_from_world * xyz);
+    if (!pixel1 || !pixel2 || !view1.camera.InImage(*pixel1) || !view2.camera.InImage(*pixel2)) {
+      continue;
+    }
+    seeds->push_back({*pixel1, *pixel2});
+  }
+}
+
+PairReport SequenceState::NewReport(int first, int second, const std::string& pass) const {
+  PairReport report;
+  report.image_idx1 = ImageIdxAt(first);
+  report.pass = pass;
+  if (second >= 0) {
+    report.image_idx2 = ImageIdxAt(second);
+    report.baseline = (ImageAt(first).cam_from_world.OriginInSource() -
+                       ImageAt(second).cam_from_world.OriginInSource())
+                          .norm();
+  }
+  return report;
+}
+
+bool SequenceState::RunPair(int first, int second, const Overlap& overlap,
+                            std::vector<PixelPair> seeds, PairReport* report, PairResult* result) {
+  const Timer timer;
+  densified_pairs_.insert(Ordered(first, second));
+  const auto picture1 = cache_.Get(ImageIdxAt(first)), picture2 = cache_.Get(ImageIdxAt(second));
+  if (!picture1 || !picture2) {
+    report->skipped = "a picture cannot be read";
+    return false;
+  }
+  PairInput input;
+  input.view1 = ViewAt(first);
+  input.view2 = ViewAt(second);
+  input.color1 = &picture1->color;
+  input.gray1 = &picture1->gray;
+  input.gray2 = &picture2->gray;
+  input.seeds = std::move(seeds);
+  input.cells = CellsAt(first);
+  if (options_.mode == "partial") {
+    input.closed = overlap.closed;
+    input.covered_range = overlap.covered_range;
+  }
+  *result = DensifyPair(input, options_, num_threads_);
+  report->overlap = overlap.rate;
+  report->skipped = result->failure;
+  report->num_seeds = result->num_seeds;
+  report->num_failed_seeds = result->num_failed_seeds;
+  report->num_points = static_cast<int64_t>(result->cloud.points.size());
+  report->rectification_seconds = result->rectification_seconds;
+  report->propagation_seconds = result->propagation_seconds;
+  report->total_seconds = timer.WallSeconds();
+  if (!result->failure.empty()) return false;
+  footprints_.push_back(std::move(result->footprint));
+  report_.num_points += report->num_points;
+  sink_(result->cloud);
+  return true;
+}
+
+void SequenceState::DensifyNewAreas(int first, int second) {
+  PairReport report = NewReport(first, second, "sequence");
+  const Overlap overlap = AssessOverlap(first);
+  for (const SeaPointLabel label : overlap.labels) {
+    report.num_oa += label == SeaPointLabel::kOA;
+    report.num_na += label == SeaPointLabel::kNA;
+    report.num_rea += label == SeaPointLabel::kREA;
+  }
+  const bool partial = options_.mode == "partial";
+  std::vector<PixelPair> seeds = SeedsFromMatches(
+      first, second, partial ? overlap.labels : std::vector<SeaPointLabel>());
+  AppendModelSeeds(first, second, &seeds);
+  PairResult result;
+  RunPair(first, second, overlap, std::move(seeds), &report, &result);
+  report_.pairs.push_back(report);
+
+  // What was closed or covered counts as filled: it is processed, though not by this pair.
+  const CellGrid cells = CellsAt(first);
+  result.filled.resize(cells.Size(), 0.0f);
+  for (size_t cell = 0; cell < cells.Size(); ++cell) {
+    const bool done_before = (!overlap.closed.empty() && overlap.closed[cell]) ||
+                             (!overlap.covered_range.empty() && overlap.covered_range[cell] > 0);
+    if (done_before) result.filled[cell] = 1;
+  }
+  previous_first_ = first;
+  previous_labels_ = RelabelProcessed(cells, result.filled, SeaPointsAt(first)->points,
+                                      options_.influence_radius * LongerSide(first));
+}
+
+void SequenceState::Complete(int position) {
+  constexpr int kMaxPartners = 2;
+  if (options_.redundancy != "all") return;
+  for (int partner_count = 0; partner_count < kMaxPartners; ++partner_count) {
+    const View view = ViewAt(position);
+    const CellGrid cells = CellsAt(position);
+    Overlap overlap;
+    const ViewCoverage coverage =
+        ProjectCoverage(footprints_, view.camera, view.cam_from_world, cells);
+    overlap.covered_range = coverage.range;
+    overlap.rate = coverage.CoveredShare();
+    std::vector<CompletionCandidate> candidates;
+    for (const int partner : covisible_[static_cast<size_t>(position)]) {
+      if (densified_pairs_.count(Ordered(position, partner)) == 0) {
+        candidates.push_back({partner, ViewAt(partner)});
+      }
+    }
+    const int partner =
+        SelectCompletionPartner(model_, ImageAt(position), view, coverage,
+                                options_.influence_radius * LongerSide(position), candidates);
+    if (partner < 0) return;
+    PairReport report = NewReport(position, partner, "completion");
+    std::vector<PixelPair> seeds = SeedsFromMatches(position, partner, {});
+    AppendModelSeeds(position, partner, &seeds);
+    PairResult result;
+    RunPair(position, partner, overlap, std::move(seeds), &report, &result);
+    report_.pairs.push_back(report);
+  }
+}
+
+SequenceReport SequenceState::TakeReport() {
+  report_.left_out = cache_.LeftOut();
+  return std::move(report_);
+}
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,82 @@
+// What densification remembers from pair to pair: the labels of the last first picture (paper 2.7)
+// and the footprints of all partial clouds (ours). The steps of the spine in densify_sequence.cc.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "densify/coverage.h"
+#include "densify/densify_pair.h"
+#include "densify/densify_sequence.h"
+#include "densify/influence_mask.h"
+#include "densify/picture_cache.h"
+
+namespace colmap_seapoint {
+
+// Positions are those of the sequence.
+class SequenceState {
+ public:
+  SequenceState(const SparseModel& model, std::vector<int> order, PictureSource* source,
+                const PartialDensificationOptions& options, int num_threads,
+                std::function<void(const PartialCloud&)> sink);
+
+  int NumPictures() const { return static_cast<int>(order_.size()); }
+
+  // The picture that completes the pair of `first` (paper 2.6): the next one, unless the motion is
+  // too small. NumPictures() when there is none: reported as skipped.
+  int SelectSecond(int first);
+  // Overlap, labels, seeds, propagation, reprojection (paper 2.5 to 2.7).
+  void DensifyNewAreas(int first, int second);
+  int SelectNextFirst(int first, int second);
+  // Ours: what this picture sees, some other picture sees too, and no pair has covered.
+  void Complete(int position);
+
+  SequenceReport TakeReport();
+
+ private:
+  // What came before, as this pair has to know it (paper 2.5; ours for redundancy "all").
+  struct Overlap {
+    std::vector<uint8_t> closed;        // sequential
+    std::vector<float> covered_range;   // all
+    std::vector<SeaPointLabel> labels;  // of the first picture's SeaPoints
+    double rate = 0;
+  };
+
+  View ViewAt(int position) const;
+  const PosedImage& ImageAt(int position) const;
+  int ImageIdxAt(int position) const { return order_[static_cast<size_t>(position)]; }
+  double LongerSide(int position) const;
+  CellGrid CellsAt(int position) const;
+
+  std::shared_ptr<const Features> SeaPointsAt(int position);
+  FeatureMatches Match(int position1, int position2);
+  double InterpairOverlap(int first, int candidate);
+  Overlap AssessOverlap(int first);
+  std::vector<PixelPair> SeedsFromMatches(int first, int second,
+                                          const std::vector<SeaPointLabel>& labels);
+  void AppendModelSeeds(int first, int second, std::vector<PixelPair>* seeds) const;
+  PairReport NewReport(int first, int second, const std::string& pass) const;
+  bool RunPair(int first, int second, const Overlap& overlap, std::vector<PixelPair> seeds,
+               PairReport* report, PairResult* result);
+
+  const SparseModel& model_;
+  const std::vector<int> order_;
+  const PartialDensificationOptions& options_;
+  const int num_threads_;
+  const std::function<void(const PartialCloud&)> sink_;
+  PictureSource* const source_;
+  PictureCache cache_;
+
+  int previous_first_ = -1;
+  std::vector<SeaPointLabel> previous_labels_;  // PA / REA, of previous_first_'s SeaPoints
+  std::vector<CloudFootprint> footprints_;
+  std::set<std::pair<int, int>> densified_pairs_;  // positions, smaller first
+  std::vector<std::vector<int>> covisible_;        // position -> positions, most shared points first
+  SequenceReport report_;
+};
+
+}  // namespace colmap_seapoint
