@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "colmap_seapoint/base/error.h"
 
@@ -37,6 +38,13 @@ std::optional<double> FirstRoot(double a, double b, double fa, double fm, double
   const double s = 2 * fa / q;
   if (s > 1) return std::nullopt;
   return a + s * (b - a);
+}
+
+double DistanceToEdge(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+                      const Eigen::Vector3d& b) {
+  const Eigen::Vector3d ab = b - a;
+  const double t = std::clamp(ab.dot(p - a) / ab.squaredNorm(), 0.0, 1.0);
+  return (a + t * ab - p).norm();
 }
 
 }  // namespace
@@ -148,39 +156,43 @@ std::optional<double> HeightField::IntersectRay(const Eigen::Vector3d& origin,
   return std::nullopt;
 }
 
-// `local`: the point in units of cells, relative to the first node. Newton for the nearest (u, v),
-// kept inside the cell: neighbouring cells take care of what lies beyond.
+// `local`: the point in units of cells, relative to the first node. The nearest point of the patch
+// lies on an edge (a straight line: closed form) or where the gradient vanishes (Newton).
 double HeightField::DistanceToCell(const Eigen::Vector3d& local, int i, int j, double best) const {
   const double s = 1 / grid_.step;
   const double z00 = Node(i, j) * s, z10 = Node(i + 1, j) * s, z01 = Node(i, j + 1) * s;
   const double z11 = Node(i + 1, j + 1) * s;
+  const Eigen::Vector3d p = local - Eigen::Vector3d(i, j, 0);
   const auto outside = [](double x, double low, double high) {
     return std::max({low - x, 0.0, x - high});
   };
-  const double ox = outside(local.x(), i, i + 1), oy = outside(local.y(), j, j + 1);
-  const double oz =
-      outside(local.z(), std::min({z00, z10, z01, z11}), std::max({z00, z10, z01, z11}));
-  if (ox * ox + oy * oy + oz * oz >= best * best) return best;
+  const Eigen::Vector3d gap(
+      outside(p.x(), 0, 1), outside(p.y(), 0, 1),
+      outside(p.z(), std::min({z00, z10, z01, z11}), std::max({z00, z10, z01, z11})));
+  if (gap.squaredNorm() >= best * best) return best;
 
+  best = std::min({best, DistanceToEdge(p, {0, 0, z00}, {1, 0, z10}),
+                   DistanceToEdge(p, {0, 1, z01}, {1, 1, z11}),
+                   DistanceToEdge(p, {0, 0, z00}, {0, 1, z01}),
+                   DistanceToEdge(p, {1, 0, z10}, {1, 1, z11})});
   const double twist = z00 - z10 - z01 + z11;
-  for (double start_u : {0.25, 0.75}) {
-    for (double start_v : {0.25, 0.75}) {
-      double u = start_u, v = start_v;
-      for (int iteration = 0; iteration < 8; ++iteration) {
-        const double zu = z10 - z00 + v * twist, zv = z01 - z00 + u * twist;
-        const double ex = i + u - local.x(), ey = j + v - local.y();
-        const double ez = z00 + u * (z10 - z00) + v * (z01 - z00) + u * v * twist - local.z();
-        best = std::min(best, std::sqrt(ex * ex + ey * ey + ez * ez));
-        // Gauss-Newton, one coordinate held where it would leave the cell.
-        const double gu = ex + ez * zu, gv = ey + ez * zv;
-        const double a = 1 + zu * zu, b = zu * zv, c = 1 + zv * zv, det = a * c - b * b;
-        double nu = std::clamp(u - (c * gu - b * gv) / det, 0.0, 1.0);
-        double nv = std::clamp(v - (gv + b * (nu - u)) / c, 0.0, 1.0);
-        nu = std::clamp(u - (gu + b * (nv - v)) / a, 0.0, 1.0);
-        if (std::abs(nu - u) + std::abs(nv - v) < 1e-6) break;
-        u = nu;
-        v = nv;
-      }
+  for (const auto& [start_u, start_v] : {std::pair(0.2, 0.2), {0.8, 0.2}, {0.2, 0.8}, {0.8, 0.8}}) {
+    double u = start_u, v = start_v;
+    for (int iteration = 0; iteration < 12; ++iteration) {
+      const double zu = z10 - z00 + v * twist, zv = z01 - z00 + u * twist;
+      const Eigen::Vector3d e(u - p.x(), v - p.y(),
+                              z00 + u * (z10 - z00) + v * (z01 - z00) + u * v * twist - p.z());
+      best = std::min(best, e.norm());
+      const double gu = e.x() + e.z() * zu, gv = e.y() + e.z() * zv;
+      const double a = 1 + zu * zu, c = 1 + zv * zv;
+      double b = zu * zv + e.z() * twist;
+      if (a * c - b * b <= 1e-3 * a * c) b = zu * zv;  // no minimum near: Gauss-Newton
+      const double det = a * c - b * b;
+      const double next_u = std::clamp(u - (c * gu - b * gv) / det, 0.0, 1.0);
+      const double next_v = std::clamp(v - (a * gv - b * gu) / det, 0.0, 1.0);
+      if (std::abs(next_u - u) + std::abs(next_v - v) < 1e-9) break;
+      u = next_u;
+      v = next_v;
     }
   }
   return best;
