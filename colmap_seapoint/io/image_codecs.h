@@ -32,13 +32,15 @@ ImageSize ReadJpegSize(const std::filesystem::path& path);
 ImageSize ReadPngSize(const std::filesystem::path& path);
 ImageSize ReadTiffSize(const std::filesystem::path& path);
 ImageSize ReadPnmSize(const std::filesystem::path& path);
+ImageSize ReadBmpSize(const std::filesystem::path& path);
 
 // `grey`: a colour picture may be returned as its luma (1 channel) when that is cheaper.
 Image<uint8_t> DecodeJpeg(const std::filesystem::path& path, bool grey);
 Image<uint8_t> DecodePng(const std::filesystem::path& path);
 Image<uint8_t> DecodeTiff(const std::filesystem::path& path);
 Image<uint8_t> DecodePnm(const std::filesystem::path& path);
-// BMP, WebP and JPEG 2000, by OpenCV.
+Image<uint8_t> DecodeBmp(const std::filesystem::path& path);
+// WebP and JPEG 2000, by OpenCV.
 Image<uint8_t> DecodeWithOpenCv(const std::filesystem::path& path, ImageFormat format);
 
 // Shared by the decoders.

@@ -70,6 +70,8 @@ Image<uint8_t> Decode(const std::filesystem::path& path, bool grey) {
         return DecodeTiff(path);
       case ImageFormat::kPnm:
         return DecodePnm(path);
+      case ImageFormat::kBmp:
+        return DecodeBmp(path);
       default:
         return DecodeWithOpenCv(path, format);
     }
@@ -89,6 +91,8 @@ ImageSize ReadSize(const std::filesystem::path& path) {
       return ReadTiffSize(path);
     case ImageFormat::kPnm:
       return ReadPnmSize(path);
+    case ImageFormat::kBmp:
+      return ReadBmpSize(path);
     default: {  // rare: not worth a header parser each
       const Image<uint8_t> image = Decode(path, false);
       return {image.width, image.height};

@@ -21,20 +21,6 @@ uint64_t BigEndian(const uint8_t* bytes, int count) {
 }
 
 // OpenCV fills up what a truncated file lacks, or prints; so the length is checked before.
-bool IsWholeBmp(const std::vector<uint8_t>& file) {
-  if (file.size() < 54) return false;
-  const uint64_t offset = LittleEndian(&file[10], 4);
-  const auto width = static_cast<int32_t>(LittleEndian(&file[18], 4));
-  const auto height = static_cast<int32_t>(LittleEndian(&file[22], 4));
-  const uint64_t bits = LittleEndian(&file[28], 2);
-  const uint64_t compression = LittleEndian(&file[30], 4);
-  if (compression != 0 && compression != 3) return file.size() >= LittleEndian(&file[2], 4);
-  if (width <= 0 || height == 0) return false;
-  const auto num_rows = static_cast<uint64_t>(std::abs(static_cast<int64_t>(height)));
-  const uint64_t row_bytes = (static_cast<uint64_t>(width) * bits + 31) / 32 * 4;
-  return offset <= file.size() && (file.size() - offset) / row_bytes >= num_rows;
-}
-
 bool IsWholeWebp(const std::vector<uint8_t>& file) {
   return file.size() >= 20 && file.size() - 8 >= LittleEndian(&file[4], 4);
 }
@@ -63,7 +49,6 @@ bool IsWholeJp2(const std::vector<uint8_t>& file) {
 }
 
 bool IsWhole(const std::vector<uint8_t>& file, ImageFormat format) {
-  if (format == ImageFormat::kBmp) return IsWholeBmp(file);
   if (format == ImageFormat::kWebp) return IsWholeWebp(file);
   return IsWholeJp2(file);
 }
