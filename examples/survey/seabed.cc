@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 #include "colmap_seapoint/base/parallel.h"
 #include "examples/survey/stones.h"
@@ -54,7 +53,6 @@ float Terrace(float s) {
 // Sharp crests, round troughs, 0 ... 1.
 float Ripple(float phase) { return 1 - std::sqrt(std::abs(std::sin(phase)) + 0.02f); }
 
-// Light values for rock-like brown, green, pink; all linear reflectance.
 Albedo Blend(const Albedo& a, const Albedo& b, float weight) {
   return {Mix(a.red, b.red, weight), Mix(a.green, b.green, weight), Mix(a.blue, b.blue, weight)};
 }
@@ -63,6 +61,7 @@ Albedo Scale(const Albedo& a, float factor) {
   return {a.red * factor, a.green * factor, a.blue * factor};
 }
 
+// Linear reflectance.
 constexpr Albedo kSand = {0.40f, 0.36f, 0.28f};
 constexpr Albedo kStone = {0.25f, 0.24f, 0.21f};
 constexpr Albedo kPinkCrust = {0.40f, 0.24f, 0.30f};

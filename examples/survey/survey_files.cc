@@ -1,5 +1,7 @@
+#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/atomic_file.h"
@@ -36,6 +38,17 @@ nlohmann::ordered_json OptionsJson(const SurveyOptions& o) {
           {"noise", o.noise},
           {"jitter", o.jitter},
           {"image_format", o.image_format}};
+}
+
+// As --ImageReader.camera_params takes them: for runs with a calibrated camera.
+std::string ParamsText(const SparseModel& model) {
+  std::string text;
+  for (double param : model.cameras.at(1).params) {
+    char number[32];
+    std::snprintf(number, sizeof(number), "%s%.10g", text.empty() ? "" : ",", param);
+    text += number;
+  }
+  return text;
 }
 
 HeightField ReadSurface(const std::filesystem::path& dir) {
@@ -89,6 +102,8 @@ void WriteSurveyTruth(const std::filesystem::path& dir, const SurveyOptions& opt
   const nlohmann::ordered_json survey_json = {{"gsd", truth.gsd},
                                               {"unit", "metre"},
                                               {"num_images", truth.model.images.size()},
+                                              {"camera_model", "OPENCV"},
+                                              {"camera_params", ParamsText(truth.model)},
                                               {"options", OptionsJson(options)}};
   WriteTextFile(truth_dir / "survey.json", survey_json.dump(2) + "\n");
 }

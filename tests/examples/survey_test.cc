@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -111,16 +112,16 @@ TEST(SurveyTest, TwoPicturesShowTheSamePlaceAlike) {
   const auto grey = [&](const SparsePoint::TrackElement& e) {
     const Eigen::Vector2d p = truth.model.images[e.image_id - 1].points2D[e.point2D_idx];
     const ColorImage& picture = pictures[e.image_id - 1];
-    return double{1} * picture.At(std::min(static_cast<int>(p.x()), options.width - 1),
-                                  std::min(static_cast<int>(p.y()), options.height - 1), 1);
+    const int x = std::min(static_cast<int>(p.x()), options.width - 1);
+    const int y = std::min(static_cast<int>(p.y()), options.height - 1);
+    return static_cast<double>(picture.At(x, y, 1));
   };
   const auto correlation = [&](bool same_place) {
     double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
     for (const auto& [id, point] : truth.model.points3D) {
-      const auto other = same_place ? truth.model.points3D.find(id) : truth.model.points3D.find(1);
       const double x = grey(point.track[0]);
-      const double y = same_place ? grey(other->second.track[1])
-                                  : grey(truth.model.points3D.at(1 + id % 700).track[1]);
+      const double y =
+          same_place ? grey(point.track[1]) : grey(truth.model.points3D.at(1 + id % 700).track[1]);
       n += 1, a += x, b += y, aa += x * x, bb += y * y, ab += x * y;
     }
     return (n * ab - a * b) / std::sqrt((n * aa - a * a) * (n * bb - b * b));
