@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <queue>
 
 #include "densify/rectification.h"
@@ -17,41 +18,21 @@ constexpr double kMinParallaxDeg = 2;
 constexpr double kMaxParallaxDeg = 40;
 constexpr double kRimMargin = 0.01;        // of the partner's sides: no window fits nearer
 
-// Range of the surface in every cell, from the nearest triangulated point of the picture within
-// `reach` pixels; 0 where there is none. Breadth first from the points' cells.
-std::vector<double> PredictRanges(const SparseModel& model, const PosedImage& image,
-                                  const View& view, const CellGrid& grid, double reach) {
-  std::vector<double> range(grid.Size(), 0);
-  std::vector<int> distance(grid.Size(), 0);
-  std::queue<size_t> queue;
-  for (const uint64_t id : image.point3D_ids) {
-    if (id == kNoPoint3D) continue;
-    const Eigen::Vector3d in_cam = view.cam_from_world * model.points3D.at(id).xyz;
-    const auto pixel = view.camera.ImgFromCam(in_cam);
-    if (!pixel || !view.camera.InImage(*pixel)) continue;
-    const size_t cell = grid.IndexOf(pixel->x(), pixel->y());
-    if (range[cell] > 0) continue;
-    range[cell] = in_cam.norm();
-    queue.push(cell);
-  }
-  const int max_distance = static_cast<int>(std::ceil(reach / grid.cell));
+template <typename Visit>
+void ForEachNeighbor(const CellGrid& grid, size_t cell, const Visit& visit) {
   const size_t width = static_cast<size_t>(grid.width);
-  while (!queue.empty()) {
-    const size_t cell = queue.front();
-    queue.pop();
-    if (distance[cell] >= max_distance) continue;
-    auto spread = [&](size_t to) {
-      if (range[to] > 0) return;
-      range[to] = range[cell];
-      distance[to] = distance[cell] + 1;
-      queue.push(to);
-    };
-    if (cell % width > 0) spread(cell - 1);
-    if (cell % width + 1 < width) spread(cell + 1);
-    if (cell >= width) spread(cell - width);
-    if (cell + width < grid.Size()) spread(cell + width);
-  }
-  return range;
+  if (cell % width > 0) visit(cell - 1);
+  if (cell % width + 1 < width) visit(cell + 1);
+  if (cell >= width) visit(cell - width);
+  if (cell + width < grid.Size()) visit(cell + width);
+}
+
+// The point of the world that a cell's centre shows at a range.
+std::optional<Eigen::Vector3d> PointAt(const View& view, const Rigid3d& world_from_cam,
+                                       const CellGrid& grid, size_t cell, double range) {
+  const auto ray = view.camera.CamFromImg(grid.Center(cell));
+  if (!ray) return std::nullopt;
+  return world_from_cam * (range * ray->homogeneous().normalized());
 }
 
 bool SeesWell(const View& view, const Eigen::Vector3d& point) {
@@ -124,17 +105,44 @@ double MedianParallaxDeg(const SparseModel& model, const PosedImage& image1,
   return angles[angles.size() / 2];
 }
 
-int SelectCompletionPartner(const SparseModel& model, const PosedImage& image, const View& view,
-                            const ViewCoverage& coverage, double reach,
+std::vector<double> PredictRanges(const SparseModel& model, const PosedImage& image,
+                                  const View& view, const ViewCoverage& coverage) {
+  const CellGrid& grid = coverage.grid;
+  std::vector<double> range(coverage.range.begin(), coverage.range.end());
+  for (const uint64_t id : image.point3D_ids) {
+    if (id == kNoPoint3D) continue;
+    const Eigen::Vector3d in_cam = view.cam_from_world * model.points3D.at(id).xyz;
+    const auto pixel = view.camera.ImgFromCam(in_cam);
+    if (!pixel || !view.camera.InImage(*pixel)) continue;
+    double& at = range[grid.IndexOf(pixel->x(), pixel->y())];
+    if (at == 0) at = in_cam.norm();
+  }
+  std::queue<size_t> queue;
+  for (size_t cell = 0; cell < grid.Size(); ++cell) {
+    if (range[cell] > 0) queue.push(cell);
+  }
+  while (!queue.empty()) {
+    const size_t cell = queue.front();
+    queue.pop();
+    ForEachNeighbor(grid, cell, [&](size_t to) {
+      if (range[to] > 0) return;
+      range[to] = range[cell];
+      queue.push(to);
+    });
+  }
+  return range;
+}
+
+int SelectCompletionPartner(const View& view, const ViewCoverage& coverage,
+                            const std::vector<double>& predicted_range,
                             const std::vector<CompletionCandidate>& candidates) {
   const CellGrid& grid = coverage.grid;
-  const std::vector<double> range = PredictRanges(model, image, view, grid, 1.5 * reach);
   const Rigid3d world_from_cam = view.cam_from_world.Inverse();
   std::vector<Eigen::Vector3d> uncovered;  // world
   for (size_t cell = 0; cell < grid.Size(); ++cell) {
-    if (coverage.range[cell] > 0 || range[cell] <= 0) continue;
-    const auto ray = view.camera.CamFromImg(grid.Center(cell));
-    if (ray) uncovered.push_back(world_from_cam * (range[cell] * ray->homogeneous().normalized()));
+    if (coverage.range[cell] > 0 || predicted_range[cell] <= 0) continue;
+    const auto point = PointAt(view, world_from_cam, grid, cell, predicted_range[cell]);
+    if (point) uncovered.push_back(*point);
   }
   int best = -1;
   double best_gain = kMinGain * static_cast<double>(grid.Size());
@@ -159,6 +167,25 @@ int SelectCompletionPartner(const SparseModel& model, const PosedImage& image, c
     }
   }
   return best;
+}
+
+std::vector<PixelPair> SeedsAlongRim(const View& view, const View& partner,
+                                     const ViewCoverage& coverage,
+                                     const std::vector<double>& predicted_range) {
+  const CellGrid& grid = coverage.grid;
+  const Rigid3d world_from_cam = view.cam_from_world.Inverse();
+  std::vector<PixelPair> seeds;
+  for (size_t cell = 0; cell < grid.Size(); ++cell) {
+    if (coverage.range[cell] > 0 || predicted_range[cell] <= 0) continue;
+    bool on_rim = false;
+    ForEachNeighbor(grid, cell, [&](size_t to) { on_rim = on_rim || coverage.range[to] > 0; });
+    if (!on_rim) continue;
+    const auto point = PointAt(view, world_from_cam, grid, cell, predicted_range[cell]);
+    if (!point || !SeesWell(partner, *point)) continue;
+    seeds.push_back({grid.Center(cell),
+                     *partner.camera.ImgFromCam(partner.cam_from_world * *point)});
+  }
+  return seeds;
 }
 
 }  // namespace colmap_seapoint

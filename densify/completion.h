@@ -26,11 +26,24 @@ struct CompletionCandidate {
   View view;
 };
 
-// The candidate that sees most of the picture's uncovered cells (those within 1.5 `reach` pixels of
-// a triangulated point, at that point's depth), with a baseline that can measure depth; its
-// position, or -1 when none sees more than kMinGain of the picture.
-int SelectCompletionPartner(const SparseModel& model, const PosedImage& image, const View& view,
-                            const ViewCoverage& coverage, double reach,
+// Range of the surface in every cell of the picture: what is reconstructed there, and elsewhere that
+// of the nearest cell that is reconstructed or holds a triangulated point. All 0 when there is
+// neither. (The mapper drops points that only two pictures see, so the rim, which matters most here,
+// has none of its own.)
+std::vector<double> PredictRanges(const SparseModel& model, const PosedImage& image,
+                                  const View& view, const ViewCoverage& coverage);
+
+// The candidate that sees most of the picture's uncovered cells, at their predicted ranges, with a
+// baseline that can measure depth; its position, or -1 when none sees more than kMinGain of the
+// picture.
+int SelectCompletionPartner(const View& view, const ViewCoverage& coverage,
+                            const std::vector<double>& predicted_range,
                             const std::vector<CompletionCandidate>& candidates);
+
+// Growth goes on where it once stopped: a seed in every uncovered cell that touches a covered one,
+// at its predicted range.
+std::vector<PixelPair> SeedsAlongRim(const View& view, const View& partner,
+                                     const ViewCoverage& coverage,
+                                     const std::vector<double>& predicted_range);
 
 }  // namespace colmap_seapoint

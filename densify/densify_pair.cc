@@ -15,7 +15,7 @@ namespace {
 constexpr double kSamplesPerPicture = 0.75e6;
 constexpr int kSamplesPerCell = 4;           // along each side
 constexpr double kMaxRowDifference = 2.0;    // between a seed's two rect rows, pixels
-constexpr int kSmallSeed = 4;                // samples: a seed with no more has failed to spread
+constexpr size_t kMinSeeds = 5;              // in new areas: fewer are not worth rectifying for
 
 bool CellIsClosed(const PairInput& input, size_t cell) {
   return !input.closed.empty() && input.closed[cell] != 0;
@@ -160,7 +160,7 @@ PairResult DensifyPair(const PairInput& input, const PartialDensificationOptions
                                          input.view2.camera, input.view2.cam_from_world);
   if (!geometry) return Failed("the cameras look along their baseline or coincide");
   const std::vector<Seed> seeds = MakeSeeds(input, *geometry);
-  if (seeds.empty()) return Failed("no seed in an area that is new");
+  if (seeds.size() < kMinSeeds) return Failed("too few seeds in areas that are new");
 
   const Timer rectification_timer;
   RectWindow window1 = WindowOfPicture(*geometry, false);
@@ -190,9 +190,7 @@ PairResult DensifyPair(const PairInput& input, const PartialDensificationOptions
   result.propagation_seconds = propagation_timer.WallSeconds();
 
   result.num_seeds = static_cast<int>(seeds.size());
-  result.num_failed_seeds =
-      static_cast<int>(std::count_if(partial.seed_sizes.begin(), partial.seed_sizes.end(),
-                                     [](int size) { return size <= kSmallSeed; }));
+  result.num_failed_seeds = partial.num_failed_seeds;
   result.filled = FilledShare(partial, samples.cell, input.cells.Size());
   result.cloud = MakePartialCloud(partial, *geometry, map1, *input.color1, num_threads);
   result.cloud.image_idx1 = input.view1.image_idx;

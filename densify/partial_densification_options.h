@@ -15,7 +15,7 @@ struct PartialDensificationOptions {
   int window_size = 9;
   double min_zncc = 0.7;
   double influence_radius = 0.03;
-  double max_expansion = 0.06;
+  double max_expansion = 0.1;
   double min_mean_motion = 0.02;
   int min_num_seeds = 20;
   bool completion = true;

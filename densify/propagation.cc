@@ -19,7 +19,6 @@ constexpr int64_t kChunk = 512;           // samples a task
 
 struct Candidate {
   int disparity = kUnmatched;
-  int seed = -1;
   float score = -1;
 };
 
@@ -83,7 +82,7 @@ class Propagation {
       const std::vector<Candidate> candidates = ScoreTargets(targets, generation);
       Commit(targets, candidates, generation + 1);
     }
-    return Finish(seeds.size());
+    return Finish();
   }
 
  private:
@@ -102,8 +101,8 @@ class Propagation {
       targets[static_cast<size_t>(s)] = b * grid_.width + a;
       candidates[static_cast<size_t>(s)] =
           Best(b * grid_.width + a, disparities.data(), static_cast<int>(disparities.size()));
-      candidates[static_cast<size_t>(s)].seed = static_cast<int>(s);
     });
+    seed_nodes_ = targets;
     std::vector<int> planted;
     std::vector<Candidate> planted_candidates;
     for (size_t s = 0; s < seeds.size(); ++s) {
@@ -166,17 +165,7 @@ class Propagation {
         disparities[static_cast<size_t>(count++)] = d;
       }
     });
-    Candidate best = Best(target, disparities.data(), count);
-    if (best.disparity == kUnmatched) return best;
-    int nearest = 1 << 30;
-    ForEachNeighbor(target, [&](int neighbor) {
-      const Candidate& from = state_[static_cast<size_t>(neighbor)];
-      if (generation_[static_cast<size_t>(neighbor)] != generation) return;
-      if (std::abs(from.disparity - best.disparity) >= nearest) return;
-      nearest = std::abs(from.disparity - best.disparity);
-      best.seed = from.seed;
-    });
-    return best;
+    return Best(target, disparities.data(), count);
   }
 
   Candidate Best(int target, const int* disparities, int count) const {
@@ -214,17 +203,14 @@ class Propagation {
     }
   }
 
-  PartialDisparity Finish(size_t num_seeds) const {
+  PartialDisparity Finish() const {
     PartialDisparity partial;
     partial.grid = grid_;
     partial.disparity.assign(grid_.Size(), 0);
     partial.score.assign(grid_.Size(), -1);
-    partial.seed_sizes.assign(num_seeds, 0);
-    for (const Candidate& candidate : state_) {
-      if (candidate.disparity != kUnmatched) {
-        ++partial.seed_sizes[static_cast<size_t>(candidate.seed)];
-      }
-    }
+    partial.num_failed_seeds = static_cast<int>(
+        std::count_if(seed_nodes_.begin(), seed_nodes_.end(),
+                      [&](int node) { return node >= 0 && !HasSpread(node); }));
     ParallelFor(num_threads_, grid_.height, [&](int64_t b) {
       for (int a = 0; a < grid_.width; ++a) {
         const size_t node = static_cast<size_t>(b) * static_cast<size_t>(grid_.width) +
@@ -233,6 +219,21 @@ class Propagation {
       }
     });
     return partial;
+  }
+
+  // At least half of the 5 x 5 samples around it are matched, by whichever seed.
+  bool HasSpread(int node) const {
+    const int a = node % grid_.width, b = node / grid_.width;
+    int matched = 0, all = 0;
+    for (int v = std::max(0, b - 2); v <= std::min(grid_.height - 1, b + 2); ++v) {
+      for (int u = std::max(0, a - 2); u <= std::min(grid_.width - 1, a + 2); ++u) {
+        const size_t sample = static_cast<size_t>(v) * static_cast<size_t>(grid_.width) +
+                              static_cast<size_t>(u);
+        ++all;
+        if (state_[sample].disparity != kUnmatched) ++matched;
+      }
+    }
+    return 2 * matched >= all;
   }
 
   // Climbs to the local maximum (at most 2 pixels), then takes the top of the parabola through it
@@ -269,6 +270,7 @@ class Propagation {
   std::vector<int> generation_;  // in which a sample was last matched
   std::vector<int> visited_;     // generation that last collected it as a target
   std::vector<int> frontier_;
+  std::vector<int> seed_nodes_;  // a seed's sample, -1 when it lies outside the window
 };
 
 }  // namespace

@@ -58,7 +58,7 @@ struct PartialDisparity {
   SampleGrid grid;
   std::vector<float> disparity;
   std::vector<float> score;
-  std::vector<int> seed_sizes;  // samples that ended up with each seed
+  int num_failed_seeds = 0;  // around which hardly anything matched (paper 2.7)
 };
 
 // The same result for any number of threads: a generation's candidates are scored against the state

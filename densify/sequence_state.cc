@@ -247,7 +247,7 @@ void SequenceState::DensifyNewAreas(int first, int second) {
 }
 
 void SequenceState::Complete(int position) {
-  constexpr int kMaxPartners = 2;
+  constexpr int kMaxPartners = 3;
   if (options_.redundancy != "all") return;
   for (int partner_count = 0; partner_count < kMaxPartners; ++partner_count) {
     const View view = ViewAt(position);
@@ -263,13 +263,15 @@ void SequenceState::Complete(int position) {
         candidates.push_back({partner, ViewAt(partner)});
       }
     }
-    const int partner =
-        SelectCompletionPartner(model_, ImageAt(position), view, coverage,
-                                options_.influence_radius * LongerSide(position), candidates);
+    const std::vector<double> range =
+        PredictRanges(model_, ImageAt(position), view, coverage);
+    const int partner = SelectCompletionPartner(view, coverage, range, candidates);
     if (partner < 0) return;
     PairReport report = NewReport(position, partner, "completion");
     std::vector<PixelPair> seeds = SeedsFromMatches(position, partner, {});
     AppendModelSeeds(position, partner, &seeds);
+    const std::vector<PixelPair> rim = SeedsAlongRim(view, ViewAt(partner), coverage, range);
+    seeds.insert(seeds.end(), rim.begin(), rim.end());
     PairResult result;
     RunPair(position, partner, overlap, std::move(seeds), &report, &result);
     report_.pairs.push_back(report);
