@@ -11,8 +11,14 @@
 namespace colmap_seapoint {
 namespace {
 
+// Whole numbers without an exponent, others as the shortest text that reads back the same.
 template <typename Number>
 std::string NumberText(Number value) {
+  if constexpr (std::is_same_v<Number, double>) {
+    if (std::fabs(value) < 1e15 && value == std::floor(value)) {
+      return NumberText(static_cast<long long>(value));
+    }
+  }
   char buffer[64];
   const auto result = std::to_chars(buffer, buffer + sizeof(buffer), value);
   return std::string(buffer, result.ptr);

@@ -6,6 +6,7 @@
 #include <map>
 #include <ostream>
 #include <set>
+#include <sstream>
 
 #include "colmap_seapoint/base/error.h"
 
@@ -16,6 +17,7 @@ namespace po = boost::program_options;
 using OptionTexts = std::map<std::string, std::string>;
 
 constexpr char kProjectPath[] = "project_path";
+constexpr size_t kHelpWidth = 96;
 
 bool IsForeign(const Command& command, const std::string& name) {
   const std::string& group = command.foreign.group;
@@ -147,6 +149,21 @@ std::string LegalValues(const OptionInfo& option) {
   return OptionValueText(&lowest) + " to " + OptionValueText(&highest);
 }
 
+// Lines of at most kHelpWidth letters, broken at blanks, each indented.
+void PrintWrapped(const std::string& text, std::ostream& out) {
+  const std::string indent(8, ' ');
+  std::istringstream words(text);
+  std::string line = indent;
+  for (std::string word; words >> word;) {
+    if (line.size() > indent.size() && line.size() + 1 + word.size() > kHelpWidth) {
+      out << line << "\n";
+      line = indent;
+    }
+    line += (line.size() > indent.size() ? " " : "") + word;
+  }
+  out << line << "\n";
+}
+
 }  // namespace
 
 bool ParseCommandLine(const Command& command, const std::vector<std::string>& arguments,
@@ -181,13 +198,13 @@ void PrintCommandHelp(const Command& command, const OptionTable& table, std::ost
   for (const OptionInfo& option : table.Options()) {
     out << "  --" << option.name;
     if (option.required) {
-      out << " (required)\n        " << option.help << "\n";
+      out << " (required)\n";
+      PrintWrapped(option.help, out);
       continue;
     }
-    out << " (=" << option.default_value << ")\n        " << option.help;
+    out << " (=" << option.default_value << ")\n";
     const std::string legal = LegalValues(option);
-    if (!legal.empty()) out << "; " << legal;
-    out << "; " << option.origin << "\n";
+    PrintWrapped(option.help + (legal.empty() ? "" : "; " + legal) + "; " + option.origin, out);
   }
   if (!command.foreign.group.empty()) {
     out << "  --" << command.foreign.group << ".<option> VALUE\n"

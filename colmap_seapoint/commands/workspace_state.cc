@@ -16,7 +16,7 @@ namespace colmap_seapoint {
 namespace {
 
 // A killed run's programs need a moment to end.
-constexpr int kLockAttempts = 50;
+constexpr int kLockAttempts = 20;
 constexpr std::chrono::milliseconds kLockPause{100};
 
 bool TakeLock(int lock) {

@@ -93,6 +93,17 @@ TEST(OptionTable, CheckSeesMissingAndIllegalValues) {
   EXPECT_EQ(table.Check(), "--Group.share nan: must lie between 0 and 1");
 }
 
+TEST(OptionTable, NumbersAsAPersonWritesThem) {
+  double value = 1e6;
+  EXPECT_EQ(OptionValueText(&value), "1000000");
+  value = -3;
+  EXPECT_EQ(OptionValueText(&value), "-3");
+  value = 0.1;
+  EXPECT_EQ(OptionValueText(&value), "0.1");
+  value = 1e300;
+  EXPECT_EQ(OptionValueText(&value), "1e+300");
+}
+
 TEST(OptionTable, ADoubleBindingIsABug) {
   Values values;
   OptionTable table = values.Table();

@@ -1,0 +1,59 @@
+// Runs a program as a user does, and looks at what it leaves.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace colmap_seapoint {
+
+struct CliOptions {
+  std::map<std::string, std::string> environment;  // added to ours
+  bool as_nobody = false;                          // gives up root (of a test run as root)
+  long max_file_bytes = 0;                         // no file may grow beyond it; 0 = no limit
+  double timeout_seconds = 60;                     // then it is killed
+  // Kill -9 as soon as this says so; asked every few milliseconds with the seconds since the start.
+  std::function<bool(double)> kill_when;
+};
+
+struct CliResult {
+  int exit_code = -1;  // -1: it did not exit by itself
+  int signal_number = 0;
+  bool timed_out = false;
+  std::string out, err;
+
+  std::string LastErrorLine() const;
+  // For messages: everything.
+  std::string Text() const;
+};
+
+CliResult RunProgram(const std::string& program, const std::vector<std::string>& arguments,
+                     const CliOptions& options = {});
+
+// A folder of its own, removed at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::filesystem::path& Path() const { return path_; }
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string ReadBytes(const std::filesystem::path& path);
+void WriteBytes(const std::filesystem::path& path, const std::string& bytes);
+
+// Relative path -> bytes of every file below `folder`.
+std::map<std::string, std::string> ReadTree(const std::filesystem::path& folder);
+
+bool ProcessIsAlive(pid_t process);
+
+}  // namespace colmap_seapoint
