@@ -95,7 +95,12 @@ std::string Reconstruction::PicturesFingerprint(
 
 void Reconstruction::AddReport(const RunReport& part) {
   report_.stages.insert(report_.stages.end(), part.stages.begin(), part.stages.end());
-  for (const auto& left_out : part.left_out) report_.left_out.push_back(left_out);
+  // A picture can be left out of several models: it is named once.
+  std::set<std::string> named;
+  for (const auto& left_out : report_.left_out) named.insert(left_out.name);
+  for (const auto& left_out : part.left_out) {
+    if (named.insert(left_out.name).second) report_.left_out.push_back(left_out);
+  }
 }
 
 void Reconstruction::ExtractFeatures() {
@@ -135,10 +140,6 @@ void Reconstruction::MatchFeatures() {
 
 void Reconstruction::MapSparsely() {
   std::string text = DatabaseFingerprint(database_path_) + colmap_.version;
-  for (const DatabaseImage& image :
-       ColmapDatabase(database_path_, ColmapDatabase::Mode::kReadWrite).ReadImages()) {
-    text += image.name;
-  }
   const auto begun = state_.Read("database");
   text += begun ? begun->fingerprint : "";
   text += OptionsFingerprint({mapper_options_.begin(), mapper_options_.end()});
@@ -238,6 +239,8 @@ void Reconstruction::DensifyModels() {
 }
 
 RunReport Reconstruction::WriteReport() {
+  // Reading leaves SQLite's side files; the last writer to close the database takes them away.
+  { const ColmapDatabase closing(database_path_, ColmapDatabase::Mode::kReadWrite); }
   const std::string summary = SummaryText(models_, report_);
   WriteTextFile(workspace_ / "report" / "summary.txt", summary);
   WriteRunReport(workspace_ / "report" / "run.json", report_);

@@ -78,7 +78,7 @@ SequenceReport Densify(const PartialDensifierOptions& options, const SparseModel
     }
   };
   const auto show = [&](int64_t done, int64_t total) {
-    if (!progress) progress = std::make_unique<Progress>("Densified pictures", total);
+    if (!progress) progress = std::make_unique<Progress>("Densification steps", total);
     progress->Update(done);
   };
   SequenceReport sequence =

@@ -80,6 +80,28 @@ std::vector<std::string> Arguments(const MapperJob& job, const fs::path& output_
   return arguments;
 }
 
+// Throws unless the mapper ended well and left a model.
+void CheckMapperResult(const ColmapProgram& colmap, const MapperJob& job,
+                       const SubprocessResult& result, const std::string& last_line,
+                       bool found_model) {
+  if (result.Succeeded() && found_model) return;
+  const std::string end = result.Text() + ", '" + last_line + "'";
+  const std::string log = job.log_path.string();
+  if (last_line.find("parse options") != std::string::npos ||
+      last_line.find("Invalid options") != std::string::npos) {
+    throw UsageError("--Mapper: " + colmap.path.string() + " refuses a value: " + last_line);
+  }
+  // COLMAP 3.8 exits with 1 both without matches and without a model.
+  if (found_model || result.signal_number != 0) {
+    throw Error(colmap.path.string(), "the mapper failed (" + end + ")",
+                "read its output in " + log + " and run the same command again");
+  }
+  throw Error(job.database_path.string(), "the mapper found no model (" + end + ")",
+              "take pictures that overlap more, or relax --Mapper.init_min_num_inliers and "
+              "--Mapper.init_min_tri_angle; its output is in " +
+                  log);
+}
+
 }  // namespace
 
 bool ColmapProgram::HasMapperOption(const std::string& name) const {
@@ -112,6 +134,7 @@ std::map<std::string, std::string> MapperOptions(
     if (colmap.HasMapperOption(name)) options[name] = value;
   };
   add("random_seed", std::to_string(random_seed));
+  add("Mapper.random_seed", std::to_string(random_seed));  // later versions; -1 = from the clock
   for (const MapperDefault& option : kMapperDefaults) add(option.name, option.value);
   for (const auto& [name, value] : user_options) {
     if (!colmap.HasMapperOption(name)) {
@@ -132,23 +155,11 @@ void RunMapper(const ColmapProgram& colmap, const MapperJob& job) {
   const auto result = RunSubprocess(colmap.path, Arguments(job, temporary), job.log_path,
                                     [&](const std::string& line) {
                                       if (!line.empty()) last_line = line;
-                                      if (const auto count = NumRegistered(line))
+                                      if (const auto count = NumRegistered(line)) {
                                         progress.Update(*count);
+                                      }
                                     });
-  const bool found_model = !ListModels(temporary).empty();
-  if (!result.Succeeded() && (result.signal_number != 0 || found_model)) {
-    throw Error(colmap.path.string(),
-                "the mapper failed (" + result.Text() + ", '" + last_line + "')",
-                "read its output in " + job.log_path.string() + " and run the same command again");
-  }
-  if (!found_model) {
-    throw Error(job.database_path.string(),
-                "the mapper found no model" +
-                    (result.Succeeded() ? "" : " (" + result.Text() + ", '" + last_line + "')"),
-                "take pictures that overlap more, or relax --Mapper.init_min_num_inliers and "
-                "--Mapper.init_min_tri_angle; its output is in " +
-                    job.log_path.string());
-  }
+  CheckMapperResult(colmap, job, result, last_line, !ListModels(temporary).empty());
   RemoveAll(job.output_path);
   Rename(temporary, job.output_path);
   progress.Finish();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "colmap_seapoint/base/options.h"
+#include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/commands/command.h"
 #include "colmap_seapoint/io/run_report.h"
 
@@ -42,7 +43,7 @@ RunReport StartReport(const std::string& command, const Options& options, const 
   report.command = command;
   report.options = OptionValues(options);
   report.seed = run.random_seed;
-  report.num_threads = run.num_threads;
+  report.num_threads = EffectiveNumThreads(run.num_threads);
   return report;
 }
 
