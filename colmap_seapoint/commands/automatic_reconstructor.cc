@@ -27,9 +27,22 @@ namespace fs = std::filesystem;
 constexpr size_t kMaxImagesForAllPairs = 50;
 // Raise it whenever the same options give other results than before.
 constexpr char kMatchingVersion[] = "1";
+constexpr char kMapperVersion[] = "1";
 constexpr char kDensificationVersion[] = "1";
 
 std::string HashText(const std::string& text) { return HashBytes(text.data(), text.size()); }
+
+// Pictures with a verified pair.
+std::vector<std::string> MatchedPictures(const fs::path& database_path) {
+  const ColmapDatabase database(database_path, ColmapDatabase::Mode::kReadWrite);
+  std::set<uint32_t> ids;
+  for (const ImagePair& pair : database.ReadVerifiedPairs()) ids.insert({pair.first, pair.second});
+  std::vector<std::string> names;
+  for (const DatabaseImage& image : database.ReadImages()) {
+    if (ids.count(image.image_id) > 0) names.push_back(image.name);
+  }
+  return names;
+}
 
 // One run: the paths of the workspace, what is known so far, and one function a stage.
 class Reconstruction {
@@ -37,7 +50,8 @@ class Reconstruction {
   explicit Reconstruction(const AutomaticReconstructorOptions& options)
       : options_(options),
         colmap_(FindColmap(options.colmap_path)),
-        mapper_options_(MapperOptions(colmap_, options.run.random_seed, options.mapper)),
+        first_round_(OptionsOfRound(colmap_, true, options.run.random_seed, options.mapper)),
+        later_rounds_(OptionsOfRound(colmap_, false, options.run.random_seed, options.mapper)),
         workspace_(fs::absolute(options.workspace_path).lexically_normal()),
         image_path_(fs::absolute(options.image_path).lexically_normal()),
         database_path_(workspace_ / "database.db"),
@@ -56,6 +70,7 @@ class Reconstruction {
  private:
   std::string PicturesFingerprint(const std::vector<ReadablePicture>& pictures) const;
   bool MatchesAllPairs() const;
+  std::string MapperFingerprint() const;
   void AddReport(const RunReport& part);
   void ReadModels();
   RunReport DensifyOnce(const fs::path& model, const std::string& name);
@@ -63,11 +78,12 @@ class Reconstruction {
 
   const AutomaticReconstructorOptions& options_;
   ColmapProgram colmap_;
-  std::map<std::string, std::string> mapper_options_;
+  MapperOptions first_round_, later_rounds_;
   fs::path workspace_, image_path_, database_path_;
   WorkspaceState state_;
   RunReport report_;
   size_t num_readable_ = 0;
+  std::vector<std::string> matched_pictures_;
   std::string mapper_fingerprint_;
   std::vector<ModelSummary> models_;
 };
@@ -132,18 +148,23 @@ void Reconstruction::MatchFeatures() {
   exhaustive.matching = options_.matching;
   exhaustive.run = options_.run;
   AddReport(MatchesAllPairs() ? MatchExhaustively(exhaustive) : MatchSequentially(sequential));
-  const ColmapDatabase database(database_path_, ColmapDatabase::Mode::kReadWrite);
-  if (!database.ReadVerifiedPairs().empty()) return;
+  matched_pictures_ = MatchedPictures(database_path_);
+  if (!matched_pictures_.empty()) return;
   throw Error(options_.image_path, "no two of its pictures show the same place",
               "take pictures that overlap more, or raise --SeaPointExtraction.max_num_features");
 }
 
-void Reconstruction::MapSparsely() {
-  std::string text = DatabaseFingerprint(database_path_) + colmap_.version;
+// The mapper's work depends on what the database holds, and on the mapper.
+std::string Reconstruction::MapperFingerprint() const {
   const auto begun = state_.Read("database");
-  text += begun ? begun->fingerprint : "";
-  text += OptionsFingerprint({mapper_options_.begin(), mapper_options_.end()});
-  mapper_fingerprint_ = HashText(text);
+  return HashText(kMapperVersion + DatabaseFingerprint(database_path_) +
+                  (begun ? begun->fingerprint : "") + colmap_.version +
+                  OptionsFingerprint({first_round_.begin(), first_round_.end()}) +
+                  OptionsFingerprint({later_rounds_.begin(), later_rounds_.end()}));
+}
+
+void Reconstruction::MapSparsely() {
+  mapper_fingerprint_ = MapperFingerprint();
   const fs::path sparse = workspace_ / "sparse";
   RunReport part;
   if (const auto done = state_.ReadIfDone("mapper", mapper_fingerprint_);
@@ -154,8 +175,8 @@ void Reconstruction::MapSparsely() {
     state_.Forget("mapper");
     {
       StageTimer timer(&part, "mapper");
-      RunMapper(colmap_, {database_path_, image_path_, sparse, workspace_ / "report" / "mapper.log",
-                          mapper_options_, static_cast<int>(num_readable_)});
+      RunMapper(colmap_, {database_path_, image_path_, sparse, workspace_ / "report", first_round_,
+                          later_rounds_, matched_pictures_});
     }
     state_.Finish("mapper", mapper_fingerprint_, part);
   }

@@ -1,12 +1,15 @@
 #include "colmap_seapoint/commands/run_mapper.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <optional>
+#include <set>
 #include <system_error>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/natural_order.h"
 #include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/io/atomic_file.h"
 #include "colmap_seapoint/io/colmap_model.h"
 #include "colmap_seapoint/io/subprocess.h"
 
@@ -15,39 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct MapperDefault {
-  const char* name;
-  const char* value;
-};
-
-// Only those that this COLMAP knows are given.
-constexpr MapperDefault kMapperDefaults[] = {
-    // With several threads the bundle adjustment adds in another order each time: two runs on the
-    // same database give other models. A run that was interrupted must end as one that was not.
-    {"Mapper.num_threads", "1"},
-};
-
-constexpr char kInstallRemedy[] =
-    "install COLMAP 3.8 or later (Debian: apt install colmap), or give its path with --colmap_path";
-
-// "  --Mapper.min_model_size arg (=10)" -> "Mapper.min_model_size"; empty for other lines.
-std::string OptionNameInHelp(const std::string& line) {
-  const size_t begin = line.find("--");
-  if (begin == std::string::npos || line.find_first_not_of(' ') < begin) return "";
-  const size_t end = line.find_first_of(" =\t", begin);
-  return line.substr(begin + 2, end == std::string::npos ? end : end - begin - 2);
-}
-
-// "Registering image #3 (4)" (3.8), "Registering frame #3 (num_reg_frames=4)" (later): how many
-// pictures the present model has.
-std::optional<int> NumRegistered(const std::string& line) {
-  const size_t what = line.find("Registering ");
-  const size_t open = line.find('(', what == std::string::npos ? 0 : what);
-  if (what == std::string::npos || open == std::string::npos) return std::nullopt;
-  const size_t digits = line.find_first_of("0123456789", open);
-  if (digits == std::string::npos || digits + 9 < line.find(')', digits)) return std::nullopt;
-  return std::atoi(line.c_str() + digits);
-}
+constexpr int kMaxRounds = 5;
+constexpr size_t kMinPicturesOfModel = 3;
 
 void RemoveAll(const fs::path& path) {
   std::error_code error;
@@ -65,104 +37,129 @@ void Rename(const fs::path& from, const fs::path& to) {
               "check the folder's permissions");
 }
 
-std::vector<std::string> Arguments(const MapperJob& job, const fs::path& output_path) {
-  std::vector<std::string> arguments = {"mapper",
-                                        "--database_path",
-                                        job.database_path.string(),
-                                        "--image_path",
-                                        job.image_path.string(),
-                                        "--output_path",
-                                        output_path.string()};
-  for (const auto& [name, value] : job.options) {
-    arguments.push_back("--" + name);
-    arguments.push_back(value);
-  }
-  return arguments;
+// "Registering image #3 (4)" (3.8), "Registering frame #3 (num_reg_frames=4)" (later): how many
+// pictures the present model has.
+std::optional<int> NumRegistered(const std::string& line) {
+  const size_t what = line.find("Registering ");
+  if (what == std::string::npos) return std::nullopt;
+  const size_t open = line.find('(', what);
+  if (open == std::string::npos) return std::nullopt;
+  const size_t digits = line.find_first_of("0123456789", open);
+  if (digits == std::string::npos) return std::nullopt;
+  return std::atoi(line.c_str() + digits);
 }
 
-// Throws unless the mapper ended well and left a model.
-void CheckMapperResult(const ColmapProgram& colmap, const MapperJob& job,
-                       const SubprocessResult& result, const std::string& last_line,
-                       bool found_model) {
-  if (result.Succeeded() && found_model) return;
-  const std::string end = result.Text() + ", '" + last_line + "'";
-  const std::string log = job.log_path.string();
-  if (last_line.find("parse options") != std::string::npos ||
-      last_line.find("Invalid options") != std::string::npos) {
-    throw UsageError("--Mapper: " + colmap.path.string() + " refuses a value: " + last_line);
+// What all rounds know of each other.
+class MapperRounds {
+ public:
+  MapperRounds(const ColmapProgram& colmap, const MapperJob& job)
+      : colmap_(colmap),
+        job_(job),
+        folder_(job.output_path.string() + ".tmp"),
+        missing_(job.pictures.begin(), job.pictures.end()) {
+    RemoveAll(folder_);
+    fs::create_directories(folder_);
   }
-  // COLMAP 3.8 exits with 1 both without matches and without a model.
-  if (found_model || result.signal_number != 0) {
-    throw Error(colmap.path.string(), "the mapper failed (" + end + ")",
-                "read its output in " + log + " and run the same command again");
+
+  void Run() {
+    for (int round = 1; round <= kMaxRounds; ++round) {
+      const bool found_model = RunRound(round);
+      if (missing_.size() < kMinPicturesOfModel || (!found_model && round > 1)) break;
+    }
+    if (num_models_ == 0) {
+      throw Error(job_.database_path.string(), "the mapper found no model (" + end_ + ")",
+                  "take pictures that overlap more, or relax --Mapper.abs_pose_min_num_inliers; "
+                  "its output is in " +
+                      LogOf(1).string());
+    }
+    RemoveAll(job_.output_path);
+    Rename(folder_, job_.output_path);
   }
-  throw Error(job.database_path.string(), "the mapper found no model (" + end + ")",
-              "take pictures that overlap more, or relax --Mapper.init_min_num_inliers and "
-              "--Mapper.init_min_tri_angle; its output is in " +
-                  log);
-}
+
+ private:
+  fs::path LogOf(int round) const {
+    return job_.log_folder / ("mapper_" + std::to_string(round) + ".log");
+  }
+
+  std::vector<std::string> Arguments(int round, const fs::path& output) const {
+    std::vector<std::string> arguments = {
+        "mapper",       "--database_path",        job_.database_path.string(),
+        "--image_path", job_.image_path.string(), "--output_path",
+        output.string()};
+    if (round > 1) {
+      const fs::path list = output / "pictures.txt";
+      std::string names;
+      for (const std::string& name : missing_) names += name + "\n";
+      WriteTextFile(list, names);
+      arguments.insert(arguments.end(), {"--image_list_path", list.string()});
+    }
+    for (const auto& [name, value] : round == 1 ? job_.first_round : job_.later_rounds) {
+      arguments.insert(arguments.end(), {"--" + name, value});
+    }
+    return arguments;
+  }
+
+  bool RunRound(int round) {
+    const fs::path output = folder_ / "round";
+    fs::create_directories(output);
+    Progress progress("Pictures registered by colmap mapper",
+                      static_cast<int64_t>(missing_.size()));
+    std::string last_line;
+    const auto read_line = [&](const std::string& line) {
+      if (!line.empty()) last_line = line;
+      if (const auto count = NumRegistered(line)) progress.Update(*count);
+    };
+    const auto result =
+        RunSubprocess(colmap_.path, Arguments(round, output), LogOf(round), read_line);
+    end_ = result.Text() + ", '" + last_line + "'";
+    std::vector<fs::path> models = ListModels(output);
+    if (!CheckResult(result, last_line, !models.empty(), round)) models.clear();
+    const size_t num_before = missing_.size();
+    for (const fs::path& model : models) TakeModel(model);
+    RemoveAll(output);
+    LogInfo("Mapper, round " + std::to_string(round) + ": " +
+            std::to_string(num_before - missing_.size()) + " of " + std::to_string(num_before) +
+            " pictures in " + std::to_string(models.size()) + " models");
+    return !models.empty();
+  }
+
+  // Whether what the mapper left can be used. Having found no model is no failure here: COLMAP 3.8
+  // exits with 1 for that.
+  bool CheckResult(const SubprocessResult& result, const std::string& last_line, bool found_model,
+                   int round) const {
+    if (last_line.find("parse options") != std::string::npos ||
+        last_line.find("Invalid options") != std::string::npos) {
+      throw UsageError("--Mapper: " + colmap_.path.string() + " refuses a value: " + last_line);
+    }
+    if (result.signal_number == 0 && (result.exit_code == 0 || !found_model)) return true;
+    const std::string finding = "the mapper failed (" + end_ + ")";
+    if (round > 1) {
+      // The models of the rounds before stand.
+      LogWarning(finding + " in round " + std::to_string(round) + "; its output is in " +
+                 LogOf(round).string());
+      return false;
+    }
+    throw Error(colmap_.path.string(), finding,
+                "read its output in " + LogOf(round).string() + " and run the same command again");
+  }
+
+  void TakeModel(const fs::path& model) {
+    for (const PosedImage& image : ReadSparseModel(model).images) missing_.erase(image.name);
+    Rename(model, folder_ / std::to_string(num_models_++));
+  }
+
+  const ColmapProgram& colmap_;
+  const MapperJob& job_;
+  fs::path folder_;
+  std::set<std::string> missing_;  // pictures in no model yet
+  int num_models_ = 0;
+  std::string end_;  // how the last round ended
+};
 
 }  // namespace
 
-bool ColmapProgram::HasMapperOption(const std::string& name) const {
-  return std::binary_search(mapper_options.begin(), mapper_options.end(), name);
-}
-
-ColmapProgram FindColmap(const std::string& colmap) {
-  ColmapProgram program;
-  program.path = FindProgram(colmap, kInstallRemedy);
-  const auto result =
-      RunSubprocess(program.path, {"mapper", "-h"}, {}, [&](const std::string& line) {
-        if (program.version.empty() && line.compare(0, 6, "COLMAP") == 0) program.version = line;
-        const std::string name = OptionNameInHelp(line);
-        if (!name.empty()) program.mapper_options.push_back(name);
-      });
-  std::sort(program.mapper_options.begin(), program.mapper_options.end());
-  if (!result.Succeeded() || !program.HasMapperOption("database_path")) {
-    throw Error(program.path.string(),
-                "does not answer 'mapper -h' as COLMAP does (" + result.Text() + ")",
-                kInstallRemedy);
-  }
-  return program;
-}
-
-std::map<std::string, std::string> MapperOptions(
-    const ColmapProgram& colmap, int random_seed,
-    const std::map<std::string, std::string>& user_options) {
-  std::map<std::string, std::string> options;
-  const auto add = [&](const std::string& name, const std::string& value) {
-    if (colmap.HasMapperOption(name)) options[name] = value;
-  };
-  add("random_seed", std::to_string(random_seed));
-  add("Mapper.random_seed", std::to_string(random_seed));  // later versions; -1 = from the clock
-  for (const MapperDefault& option : kMapperDefaults) add(option.name, option.value);
-  for (const auto& [name, value] : user_options) {
-    if (!colmap.HasMapperOption(name)) {
-      throw UsageError("--" + name + " " + value + ": this mapper has no such option ('" +
-                       colmap.path.string() + " mapper -h' lists them)");
-    }
-    options[name] = value;
-  }
-  return options;
-}
-
 void RunMapper(const ColmapProgram& colmap, const MapperJob& job) {
-  const fs::path temporary = job.output_path.string() + ".tmp";
-  RemoveAll(temporary);
-  fs::create_directories(temporary);
-  Progress progress("Pictures registered by colmap mapper", job.num_images);
-  std::string last_line;
-  const auto result = RunSubprocess(colmap.path, Arguments(job, temporary), job.log_path,
-                                    [&](const std::string& line) {
-                                      if (!line.empty()) last_line = line;
-                                      if (const auto count = NumRegistered(line)) {
-                                        progress.Update(*count);
-                                      }
-                                    });
-  CheckMapperResult(colmap, job, result, last_line, !ListModels(temporary).empty());
-  RemoveAll(job.output_path);
-  Rename(temporary, job.output_path);
-  progress.Finish();
+  MapperRounds(colmap, job).Run();
 }
 
 std::vector<fs::path> ListModels(const fs::path& sparse) {

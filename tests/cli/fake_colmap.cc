@@ -2,6 +2,7 @@
 // tells what its mapper does:
 //   model     (default) the exact model of a synthetic strip, from the database's images
 //   partial   ... without the last picture       two_models  ... as two models of half the pictures
+//   two_rounds ... the first half in the first round, the others when they are asked for alone
 //   no_model  ends like COLMAP 3.8 without any   crash       a half-written model, then SIGSEGV
 // FAKE_COLMAP_SECONDS: how long the mapper takes. FAKE_COLMAP_PID: file that gets its process id.
 #include <signal.h>
@@ -13,6 +14,7 @@
 #include <fstream>
 #include <iostream>
 #include <map>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -34,7 +36,8 @@ std::string Variable(const char* name, const std::string& fallback) {
 void PrintHelp() {
   std::cout << "COLMAP 3.8 (fake)\n\nOptions can either be specified via command-line or by ...\n\n"
             << "  -h [ --help ] \n  --random_seed arg (=0)\n  --database_path arg\n"
-            << "  --image_path arg\n  --output_path arg\n  --Mapper.num_threads arg (=-1)\n"
+            << "  --image_path arg\n  --image_list_path arg\n  --output_path arg\n  "
+               "--Mapper.num_threads arg (=-1)\n"
             << "  --Mapper.min_model_size arg (=10)\n";
 }
 
@@ -99,12 +102,25 @@ std::vector<DatabaseImage> ImagesInOrder(const ColmapDatabase& database) {
   return images;
 }
 
+// One name a line; empty when there is no list.
+std::set<std::string> ReadList(const std::string& path) {
+  std::set<std::string> names;
+  std::ifstream list(path);
+  for (std::string name; std::getline(list, name);) names.insert(name);
+  return names;
+}
+
 int RunMapper(std::map<std::string, std::string> options) {
   const std::string mode = Variable("FAKE_COLMAP_MODE", "model");
   const std::string pid_file = Variable("FAKE_COLMAP_PID", "");
   if (!pid_file.empty()) std::ofstream(pid_file) << getpid() << std::endl;
   const ColmapDatabase database(options["--database_path"], ColmapDatabase::Mode::kReadOnly);
   std::vector<DatabaseImage> images = ImagesInOrder(database);
+  const std::set<std::string> listed = ReadList(options["--image_list_path"]);
+  if (!listed.empty()) {
+    const auto is_unlisted = [&](const auto& image) { return listed.count(image.name) == 0; };
+    images.erase(std::remove_if(images.begin(), images.end(), is_unlisted), images.end());
+  }
   const double seconds = std::atof(Variable("FAKE_COLMAP_SECONDS", "0").c_str());
   for (size_t i = 0; i < images.size(); ++i) {
     std::cout << "Registering image #" << images[i].image_id << " (" << i + 1 << ")" << std::endl;
@@ -121,6 +137,7 @@ int RunMapper(std::map<std::string, std::string> options) {
     raise(SIGSEGV);
   }
   if (mode == "partial") images.pop_back();
+  if (mode == "two_rounds" && listed.empty()) images.resize(images.size() / 2);
   if (mode == "two_models") {
     const auto middle = images.begin() + static_cast<std::ptrdiff_t>(images.size() / 2);
     WriteModel({middle, images.end()}, database, output + "/1");

@@ -48,7 +48,7 @@ TEST_F(Reconstructor, RunsTheWholeChain) {
   ASSERT_EQ(result.exit_code, 0) << result.Text();
   for (const char* file : {"database.db", "sparse/0/images.bin", "dense/0/fused.ply",
                            "dense/0/fused.ply.vis", "dense/0/pairs.csv", "dense/0/run.json",
-                           "report/summary.txt", "report/run.json", "report/mapper.log"}) {
+                           "report/summary.txt", "report/run.json", "report/mapper_1.log"}) {
     EXPECT_TRUE(fs::exists(Workspace() / file)) << file;
   }
   EXPECT_FALSE(fs::exists(Workspace() / "sparse.tmp"));
@@ -96,7 +96,7 @@ TEST_F(Reconstructor, AMapperThatFindsNoModel) {
   CliResult result = Reconstruct("no_model");
   EXPECT_EQ(result.exit_code, 1) << result.Text();
   EXPECT_NE(result.LastErrorLine().find("found no model"), std::string::npos) << result.Text();
-  EXPECT_NE(result.LastErrorLine().find("mapper.log"), std::string::npos) << result.Text();
+  EXPECT_NE(result.LastErrorLine().find("mapper_1.log"), std::string::npos) << result.Text();
   EXPECT_FALSE(fs::exists(Workspace() / "sparse"));
   // Without the cause, the same command goes on from there.
   result = Reconstruct("model");
@@ -134,6 +134,15 @@ TEST_F(Reconstructor, EveryModelBecomesACloud) {
   ASSERT_EQ(Reconstruct("model", {"--Mapper.min_model_size", "3"}).exit_code, 0);
   EXPECT_TRUE(fs::exists(Workspace() / "dense/0/fused.ply"));
   EXPECT_FALSE(fs::exists(Workspace() / "dense/1"));
+}
+
+TEST_F(Reconstructor, WhatTheFirstRoundLeavesOverGetsItsOwn) {
+  const CliResult result = Reconstruct("two_rounds");
+  EXPECT_EQ(result.exit_code, 0) << result.Text();
+  EXPECT_EQ(ReadSparseModel(Workspace() / "sparse/0").images.size(), 3u);
+  EXPECT_EQ(ReadSparseModel(Workspace() / "sparse/1").images.size(), 3u);
+  EXPECT_TRUE(fs::exists(Workspace() / "dense/1/fused.ply"));
+  EXPECT_EQ(Report()["images_used"], 6);
 }
 
 TEST_F(Reconstructor, BadPicturesAreLeftOutOfTheChain) {

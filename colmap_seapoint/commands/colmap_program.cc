@@ -1,0 +1,87 @@
+#include "colmap_seapoint/commands/colmap_program.h"
+
+#include <algorithm>
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/io/subprocess.h"
+
+namespace colmap_seapoint {
+namespace {
+
+struct MapperDefault {
+  const char* name;
+  const char* value;
+};
+
+constexpr MapperDefault kEveryRound[] = {
+    // With several threads the bundle adjustment adds in another order each time: two runs on the
+    // same database give other models. A run that was interrupted must end as one that was not.
+    {"Mapper.num_threads", "1"},
+};
+
+// COLMAP's own thresholds give the best first model. The pictures that they leave over are few to a
+// place and share little: a round of their own, with less asked, still joins many of them.
+constexpr MapperDefault kLaterRounds[] = {
+    {"Mapper.min_model_size", "3"},
+    {"Mapper.init_min_num_inliers", "50"},
+    {"Mapper.init_min_tri_angle", "4"},
+    {"Mapper.abs_pose_min_num_inliers", "15"},
+    {"Mapper.abs_pose_min_inlier_ratio", "0.15"},
+    {"Mapper.tri_ignore_two_view_tracks", "0"},
+};
+
+constexpr char kInstallRemedy[] =
+    "install COLMAP 3.8 or later (Debian: apt install colmap), or give its path with --colmap_path";
+
+// "  --Mapper.min_model_size arg (=10)" -> "Mapper.min_model_size"; empty for other lines.
+std::string OptionNameInHelp(const std::string& line) {
+  const size_t begin = line.find("--");
+  if (begin == std::string::npos || line.find_first_not_of(' ') < begin) return "";
+  const size_t end = line.find_first_of(" =\t", begin);
+  return line.substr(begin + 2, end == std::string::npos ? end : end - begin - 2);
+}
+
+}  // namespace
+
+bool ColmapProgram::HasMapperOption(const std::string& name) const {
+  return std::binary_search(mapper_options.begin(), mapper_options.end(), name);
+}
+
+ColmapProgram FindColmap(const std::string& colmap) {
+  ColmapProgram program;
+  program.path = FindProgram(colmap, kInstallRemedy);
+  const auto read_line = [&](const std::string& line) {
+    if (program.version.empty() && line.compare(0, 6, "COLMAP") == 0) program.version = line;
+    const std::string name = OptionNameInHelp(line);
+    if (!name.empty()) program.mapper_options.push_back(name);
+  };
+  const auto result = RunSubprocess(program.path, {"mapper", "-h"}, {}, read_line);
+  std::sort(program.mapper_options.begin(), program.mapper_options.end());
+  if (result.Succeeded() && program.HasMapperOption("database_path")) return program;
+  throw Error(program.path.string(),
+              "does not answer 'mapper -h' as COLMAP does (" + result.Text() + ")", kInstallRemedy);
+}
+
+MapperOptions OptionsOfRound(const ColmapProgram& colmap, bool is_first_round, int random_seed,
+                             const MapperOptions& user_options) {
+  MapperOptions options;
+  const auto add = [&](const std::string& name, const std::string& value) {
+    if (colmap.HasMapperOption(name)) options[name] = value;
+  };
+  add("random_seed", std::to_string(random_seed));
+  add("Mapper.random_seed", std::to_string(random_seed));  // later versions; -1 = from the clock
+  for (const MapperDefault& option : kEveryRound) add(option.name, option.value);
+  if (!is_first_round) {
+    for (const MapperDefault& option : kLaterRounds) add(option.name, option.value);
+  }
+  for (const auto& [name, value] : user_options) {
+    if (!colmap.HasMapperOption(name)) {
+      throw UsageError("--" + name + " " + value + ": this mapper has no such option ('" +
+                       colmap.path.string() + " mapper -h' lists them)");
+    }
+    options[name] = value;
+  }
+  return options;
+}
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,30 @@
+// The user's COLMAP: where it is, which it is, which options its mapper knows.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace colmap_seapoint {
+
+using MapperOptions = std::map<std::string, std::string>;  // "Mapper.min_model_size" -> "3"
+
+struct ColmapProgram {
+  std::filesystem::path path;
+  std::string version;                      // its own first line, "COLMAP 3.8 (...)"
+  std::vector<std::string> mapper_options;  // sorted names, without "--"
+  bool HasMapperOption(const std::string& name) const;
+};
+
+// Finds `colmap` (a path, or a name on PATH) and asks it for its mapper's options, since their
+// names move between versions. Throws Error when it is missing or does not answer.
+ColmapProgram FindColmap(const std::string& colmap);
+
+// What the mapper is given in a round: what suits SeaPoints (of later rounds: relaxed) as far as
+// this version knows it, then the user's options, which win. Throws UsageError for one of the
+// user's that this mapper does not know.
+MapperOptions OptionsOfRound(const ColmapProgram& colmap, bool is_first_round, int random_seed,
+                             const MapperOptions& user_options);
+
+}  // namespace colmap_seapoint
