@@ -13,10 +13,10 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr size_t kMaxCovisible = 12;
-constexpr double kMinGain = 0.015;         // share of a picture's cells that makes a pair worth it
+constexpr double kMinGain = 0.015;  // share of a picture's cells that makes a pair worth it
 constexpr double kMinParallaxDeg = 2;
 constexpr double kMaxParallaxDeg = 40;
-constexpr double kRimMargin = 0.01;        // of the partner's sides: no window fits nearer
+constexpr double kRimMargin = 0.01;  // of the partner's sides: no window fits nearer
 
 template <typename Visit>
 void ForEachNeighbor(const CellGrid& grid, size_t cell, const Visit& visit) {
@@ -182,8 +182,8 @@ std::vector<PixelPair> SeedsAlongRim(const View& view, const View& partner,
     if (!on_rim) continue;
     const auto point = PointAt(view, world_from_cam, grid, cell, predicted_range[cell]);
     if (!point || !SeesWell(partner, *point)) continue;
-    seeds.push_back({grid.Center(cell),
-                     *partner.camera.ImgFromCam(partner.cam_from_world * *point)});
+    seeds.push_back(
+        {grid.Center(cell), *partner.camera.ImgFromCam(partner.cam_from_world * *point)});
   }
   return seeds;
 }

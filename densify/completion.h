@@ -1,6 +1,6 @@
-// The completion pass (ours): after the sequence, what two pictures of any strip see and no pair has
-// covered is densified from the best pair for it. Most of it is the rim of the survey, which only
-// (V, V + 2) or neighbouring strips see twice.
+// The completion pass (ours): after the sequence, what two pictures of any strip see and no pair
+// has covered is densified from the best pair for it. Most of it is the rim of the survey, which
+// only (V, V + 2) or neighbouring strips see twice.
 #pragma once
 
 #include <vector>
@@ -26,10 +26,10 @@ struct CompletionCandidate {
   View view;
 };
 
-// Range of the surface in every cell of the picture: what is reconstructed there, and elsewhere that
-// of the nearest cell that is reconstructed or holds a triangulated point. All 0 when there is
-// neither. (The mapper drops points that only two pictures see, so the rim, which matters most here,
-// has none of its own.)
+// Range of the surface in every cell of the picture: what is reconstructed there, and elsewhere
+// that of the nearest cell that is reconstructed or holds a triangulated point. All 0 when there is
+// neither. (The mapper drops points that only two pictures see, so the rim, which matters most
+// here, has none of its own.)
 std::vector<double> PredictRanges(const SparseModel& model, const PosedImage& image,
                                   const View& view, const ViewCoverage& coverage);
 

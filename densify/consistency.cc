@@ -7,9 +7,9 @@ namespace colmap_seapoint {
 
 namespace {
 
-constexpr float kMaxStep = 1.0f;      // disparity between neighbouring samples of one surface
-constexpr int kMinAgreeing = 3;       // of a sample's 8 neighbours
-constexpr int kMinSpeckSize = 30;     // samples
+constexpr float kMaxStep = 1.0f;   // disparity between neighbouring samples of one surface
+constexpr int kMinAgreeing = 3;    // of a sample's 8 neighbours
+constexpr int kMinSpeckSize = 30;  // samples
 
 float SurfaceTolerance(const PartialDisparity& partial) {
   return kMaxStep * std::max(1.0f, 0.5f * static_cast<float>(partial.grid.step));

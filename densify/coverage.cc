@@ -36,12 +36,13 @@ void MarkPatch(const SurfacePatch& patch, const Camera& camera, const Rigid3d& c
   if (!pixel) return;
   const CellGrid& grid = coverage->grid;
   const double distance = in_cam.norm();
-  // Cells whose centre lies inside the patch, a little grown so that turned patches leave no cracks.
+  // Cells whose centre lies inside the patch, a little grown so that turned patches leave no
+  // cracks.
   const double half = 0.6 * patch.size * camera.MeanFocal() / distance;
   const int a0 = std::max(0, static_cast<int>(std::ceil((pixel->x() - half) / grid.cell - 0.5)));
   const int b0 = std::max(0, static_cast<int>(std::ceil((pixel->y() - half) / grid.cell - 0.5)));
-  const int a1 = std::min(grid.width - 1,
-                          static_cast<int>(std::floor((pixel->x() + half) / grid.cell - 0.5)));
+  const int a1 =
+      std::min(grid.width - 1, static_cast<int>(std::floor((pixel->x() + half) / grid.cell - 0.5)));
   const int b1 = std::min(grid.height - 1,
                           static_cast<int>(std::floor((pixel->y() + half) / grid.cell - 0.5)));
   for (int b = b0; b <= b1; ++b) {

@@ -13,9 +13,9 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr double kSamplesPerPicture = 0.75e6;
-constexpr int kSamplesPerCell = 4;           // along each side
-constexpr double kMaxRowDifference = 2.0;    // between a seed's two rect rows, pixels
-constexpr size_t kMinSeeds = 5;              // in new areas: fewer are not worth rectifying for
+constexpr int kSamplesPerCell = 4;         // along each side
+constexpr double kMaxRowDifference = 2.0;  // between a seed's two rect rows, pixels
+constexpr size_t kMinSeeds = 5;            // in new areas: fewer are not worth rectifying for
 
 bool CellIsClosed(const PairInput& input, size_t cell) {
   return !input.closed.empty() && input.closed[cell] != 0;
@@ -102,8 +102,8 @@ std::vector<Seed> MakeSeeds(const PairInput& input, const PairGeometry& geometry
     if (seed.disparity < 1) continue;
     if (!CellIsFree(input, cell)) {
       const double x = seed.x / geometry.focal, y = seed.y / geometry.focal;
-      const double covered = geometry.focal * geometry.baseline *
-                             std::sqrt(x * x + y * y + 1) / input.covered_range[cell];
+      const double covered = geometry.focal * geometry.baseline * std::sqrt(x * x + y * y + 1) /
+                             input.covered_range[cell];
       if (!SampleGate::Admits(static_cast<float>(covered), static_cast<float>(seed.disparity))) {
         continue;
       }
@@ -131,7 +131,8 @@ std::vector<float> FilledShare(const PartialDisparity& partial, const std::vecto
   }
   std::vector<float> filled(num_cells, 0);
   for (size_t cell = 0; cell < num_cells; ++cell) {
-    if (all[cell] > 0) filled[cell] = static_cast<float>(matched[cell]) / static_cast<float>(all[cell]);
+    if (all[cell] > 0)
+      filled[cell] = static_cast<float>(matched[cell]) / static_cast<float>(all[cell]);
   }
   return filled;
 }

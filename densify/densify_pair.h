@@ -40,12 +40,12 @@ struct PairInput {
 };
 
 struct PairResult {
-  std::string failure;         // why there is nothing, or empty
+  std::string failure;  // why there is nothing, or empty
   PartialCloud cloud;
   CloudFootprint footprint;
-  std::vector<float> filled;   // share of each cell's samples that matched, 0..1
-  int num_seeds = 0;           // that were usable: on the epipolar line, in an open cell
-  int num_failed_seeds = 0;    // that did not spread
+  std::vector<float> filled;  // share of each cell's samples that matched, 0..1
+  int num_seeds = 0;          // that were usable: on the epipolar line, in an open cell
+  int num_failed_seeds = 0;   // that did not spread
   double rectification_seconds = 0, propagation_seconds = 0;  // wall
 };
 

@@ -11,21 +11,26 @@ namespace colmap_seapoint {
 
 namespace {
 
-constexpr int kNormalRadius = 2;       // samples around a point that its plane is fitted to
-constexpr int kMinNormalSupport = 6;   // of them
+constexpr int kNormalRadius = 2;      // samples around a point that its plane is fitted to
+constexpr int kMinNormalSupport = 6;  // of them
 constexpr float kMinFilledCell = 0.5f;
 
 // Least squares of disparity = c + a u + b v around a sample, in samples; false when degenerate.
 bool FitDisparityPlane(const PartialDisparity& partial, int a, int b, double* slope_x,
                        double* slope_y) {
   const SampleGrid& grid = partial.grid;
-  const size_t node = static_cast<size_t>(b) * static_cast<size_t>(grid.width) + static_cast<size_t>(a);
+  const size_t node =
+      static_cast<size_t>(b) * static_cast<size_t>(grid.width) + static_cast<size_t>(a);
   const float center = partial.disparity[node];
   const float tolerance = 0.75f * static_cast<float>(kNormalRadius * std::max(1, grid.step));
   double n = 0, su = 0, sv = 0, suu = 0, suv = 0, svv = 0, sd = 0, sud = 0, svd = 0;
-  for (int v = std::max(0, b - kNormalRadius); v <= std::min(grid.height - 1, b + kNormalRadius); ++v) {
-    for (int u = std::max(0, a - kNormalRadius); u <= std::min(grid.width - 1, a + kNormalRadius); ++u) {
-      const float disparity = partial.disparity[static_cast<size_t>(v) * static_cast<size_t>(grid.width) + static_cast<size_t>(u)];
+  for (int v = std::max(0, b - kNormalRadius); v <= std::min(grid.height - 1, b + kNormalRadius);
+       ++v) {
+    for (int u = std::max(0, a - kNormalRadius); u <= std::min(grid.width - 1, a + kNormalRadius);
+         ++u) {
+      const float disparity =
+          partial.disparity[static_cast<size_t>(v) * static_cast<size_t>(grid.width) +
+                            static_cast<size_t>(u)];
       if (disparity <= 0 || std::abs(disparity - center) > tolerance) continue;
       const double du = u - a, dv = v - b, d = disparity - center;
       n += 1;
@@ -58,7 +63,8 @@ Eigen::Vector3d NormalInRect(const PartialDisparity& partial, const PairGeometry
   const Eigen::Vector3d ray = Eigen::Vector3d(x, y, geometry.focal).normalized();
   double p = 0, q = 0;
   if (!FitDisparityPlane(partial, a, b, &p, &q)) return -ray;
-  const double d = partial.disparity[static_cast<size_t>(b) * static_cast<size_t>(grid.width) + static_cast<size_t>(a)];
+  const double d = partial.disparity[static_cast<size_t>(b) * static_cast<size_t>(grid.width) +
+                                     static_cast<size_t>(a)];
   const Eigen::Vector3d normal =
       Eigen::Vector3d(p, q, (d - p * x - q * y) / geometry.focal).normalized();
   return normal.dot(ray) > 0 ? Eigen::Vector3d(-normal) : normal;
@@ -77,7 +83,8 @@ PartialCloud MakePartialCloud(const PartialDisparity& partial, const PairGeometr
   const SampleGrid& grid = partial.grid;
   std::vector<size_t> first_of_row(static_cast<size_t>(grid.height) + 1, 0);
   for (int b = 0; b < grid.height; ++b) {
-    const float* row = partial.disparity.data() + static_cast<size_t>(b) * static_cast<size_t>(grid.width);
+    const float* row =
+        partial.disparity.data() + static_cast<size_t>(b) * static_cast<size_t>(grid.width);
     first_of_row[static_cast<size_t>(b) + 1] =
         first_of_row[static_cast<size_t>(b)] +
         static_cast<size_t>(std::count_if(row, row + grid.width, [](float d) { return d > 0; }));
@@ -88,7 +95,9 @@ PartialCloud MakePartialCloud(const PartialDisparity& partial, const PairGeometr
     const int b = static_cast<int>(row);
     size_t next = first_of_row[static_cast<size_t>(b)];
     for (int a = 0; a < grid.width; ++a) {
-      const float disparity = partial.disparity[static_cast<size_t>(b) * static_cast<size_t>(grid.width) + static_cast<size_t>(a)];
+      const float disparity =
+          partial.disparity[static_cast<size_t>(b) * static_cast<size_t>(grid.width) +
+                            static_cast<size_t>(a)];
       if (disparity <= 0) continue;
       DensePoint& point = cloud.points[next++];
       point.xyz = geometry.PointInWorld(grid.RectX(a), grid.RectY(b), disparity).cast<float>();
@@ -112,7 +121,8 @@ CloudFootprint MakeFootprint(const PartialDisparity& partial, const PairGeometry
   std::vector<Sum> sums(cells.Size());
   for (int b = 0; b < grid.height; ++b) {
     for (int a = 0; a < grid.width; ++a) {
-      const size_t node = static_cast<size_t>(b) * static_cast<size_t>(grid.width) + static_cast<size_t>(a);
+      const size_t node =
+          static_cast<size_t>(b) * static_cast<size_t>(grid.width) + static_cast<size_t>(a);
       if (partial.disparity[node] <= 0 || cell_of_sample[node] < 0) continue;
       Sum& sum = sums[static_cast<size_t>(cell_of_sample[node])];
       sum.point += geometry.PointInWorld(grid.RectX(a), grid.RectY(b), partial.disparity[node]);
@@ -124,8 +134,8 @@ CloudFootprint MakeFootprint(const PartialDisparity& partial, const PairGeometry
     if (filled[cell] < kMinFilledCell || sums[cell].count == 0) continue;
     const Eigen::Vector3d center = sums[cell].point / sums[cell].count;
     const double range = (center - geometry.center1).norm();
-    footprint.patches.push_back({center.cast<float>(),
-                                 static_cast<float>(cells.cell * range / geometry.focal)});
+    footprint.patches.push_back(
+        {center.cast<float>(), static_cast<float>(cells.cell * range / geometry.focal)});
   }
   footprint.UpdateSphere();
   return footprint;

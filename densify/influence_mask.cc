@@ -71,9 +71,9 @@ std::vector<SeaPointLabel> LabelSeaPoints(const InfluenceMask& mask,
   labels.reserve(candidate_points.size());
   for (const SeaPoint& point : candidate_points) {
     const size_t cell = mask.grid.IndexOf(point.x, point.y);
-    labels.push_back(mask.marked[cell]  ? SeaPointLabel::kOA
-                     : revived[cell] ? SeaPointLabel::kREA
-                                     : SeaPointLabel::kNA);
+    labels.push_back(mask.marked[cell] ? SeaPointLabel::kOA
+                     : revived[cell]   ? SeaPointLabel::kREA
+                                       : SeaPointLabel::kNA);
   }
   return labels;
 }

@@ -208,13 +208,13 @@ class Propagation {
     partial.grid = grid_;
     partial.disparity.assign(grid_.Size(), 0);
     partial.score.assign(grid_.Size(), -1);
-    partial.num_failed_seeds = static_cast<int>(
-        std::count_if(seed_nodes_.begin(), seed_nodes_.end(),
-                      [&](int node) { return node >= 0 && !HasSpread(node); }));
+    partial.num_failed_seeds =
+        static_cast<int>(std::count_if(seed_nodes_.begin(), seed_nodes_.end(),
+                                       [&](int node) { return node >= 0 && !HasSpread(node); }));
     ParallelFor(num_threads_, grid_.height, [&](int64_t b) {
       for (int a = 0; a < grid_.width; ++a) {
-        const size_t node = static_cast<size_t>(b) * static_cast<size_t>(grid_.width) +
-                            static_cast<size_t>(a);
+        const size_t node =
+            static_cast<size_t>(b) * static_cast<size_t>(grid_.width) + static_cast<size_t>(a);
         if (state_[node].disparity != kUnmatched) RefineSubPixel(node, &partial);
       }
     });
@@ -227,8 +227,8 @@ class Propagation {
     int matched = 0, all = 0;
     for (int v = std::max(0, b - 2); v <= std::min(grid_.height - 1, b + 2); ++v) {
       for (int u = std::max(0, a - 2); u <= std::min(grid_.width - 1, a + 2); ++u) {
-        const size_t sample = static_cast<size_t>(v) * static_cast<size_t>(grid_.width) +
-                              static_cast<size_t>(u);
+        const size_t sample =
+            static_cast<size_t>(v) * static_cast<size_t>(grid_.width) + static_cast<size_t>(u);
         ++all;
         if (state_[sample].disparity != kUnmatched) ++matched;
       }

@@ -14,8 +14,8 @@ namespace colmap_seapoint {
 
 // A matched SeaPoint (or a triangulated point of the model) in the rect frame.
 struct Seed {
-  double x = 0, y = 0;    // rect pixels, in picture 1
-  double disparity = 0;   // rect pixels
+  double x = 0, y = 0;   // rect pixels, in picture 1
+  double disparity = 0;  // rect pixels
 };
 
 // Samples every `step` pixels of picture 1's rectified window; sample (a, b) lies at window pixel
@@ -48,7 +48,7 @@ struct RectPicture {
 };
 
 struct PropagationOptions {
-  int window_size;      // correlation window, pixels
+  int window_size;  // correlation window, pixels
   float min_zncc;
   int max_generations;  // the limit on expansion, in samples from the seed
 };

@@ -81,8 +81,7 @@ RectWindow WindowOfPicture(const PairGeometry& geometry, bool second) {
     for (int i = 0; i <= kSamples; ++i) {
       const Eigen::Vector2d pixel(static_cast<double>(camera.width) * i / kSamples,
                                   static_cast<double>(camera.height) * j / kSamples);
-      const auto rect =
-          second ? geometry.RectFromPixel2(pixel) : geometry.RectFromPixel1(pixel);
+      const auto rect = second ? geometry.RectFromPixel2(pixel) : geometry.RectFromPixel1(pixel);
       if (!rect) continue;
       const double x = std::clamp(rect->x(), -limit, limit);
       const double y = std::clamp(rect->y(), -limit, limit);
@@ -104,8 +103,7 @@ RectMap::RectMap(const PairGeometry& geometry, bool second, const RectWindow& wi
                  int num_threads)
     : window_(window) {
   const Camera& camera = second ? geometry.camera2 : geometry.camera1;
-  const Eigen::Matrix3d& cam_from_rect =
-      second ? geometry.cam2_from_rect : geometry.cam1_from_rect;
+  const Eigen::Matrix3d& cam_from_rect = second ? geometry.cam2_from_rect : geometry.cam1_from_rect;
   source_width_ = camera.width;
   source_height_ = camera.height;
   nodes_x_ = window.width / kCell + 2;
@@ -117,8 +115,7 @@ RectMap::RectMap(const PairGeometry& geometry, bool second, const RectWindow& wi
     const double y = window.y0 + 0.5 + static_cast<double>(row) * kCell;
     for (int column = 0; column < nodes_x_; ++column) {
       const double x = window.x0 + 0.5 + static_cast<double>(column) * kCell;
-      const auto pixel =
-          camera.ImgFromCam(cam_from_rect * Eigen::Vector3d(x, y, geometry.focal));
+      const auto pixel = camera.ImgFromCam(cam_from_rect * Eigen::Vector3d(x, y, geometry.focal));
       // Far outside, distortion polynomials fold back: only rays that the camera really has.
       if (!pixel || pixel->x() < -camera.width || pixel->x() > 2 * camera.width ||
           pixel->y() < -camera.height || pixel->y() > 2 * camera.height) {
@@ -138,7 +135,8 @@ std::optional<Eigen::Vector2f> RectMap::Source(int i, int j) const {
   const Eigen::Vector2f source = (1 - v) * ((1 - u) * node[0] + u * node[1]) +
                                  v * ((1 - u) * node[nodes_x_] + u * node[nodes_x_ + 1]);
   // The comparison is false for NaN too.
-  if (!(source.x() >= 0.5f && source.y() >= 0.5f && source.x() < static_cast<float>(source_width_) - 0.5f &&
+  if (!(source.x() >= 0.5f && source.y() >= 0.5f &&
+        source.x() < static_cast<float>(source_width_) - 0.5f &&
         source.y() < static_cast<float>(source_height_) - 0.5f)) {
     return std::nullopt;
   }

@@ -1,5 +1,6 @@
-// A pair of posed pictures turned so that matches lie on the same row (ours: the poses are known, so
-// the search is along the epipolar line). Any camera model; lens distortion is taken out on the way.
+// A pair of posed pictures turned so that matches lie on the same row (ours: the poses are known,
+// so the search is along the epipolar line). Any camera model; lens distortion is taken out on the
+// way.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,8 +13,8 @@
 
 namespace colmap_seapoint {
 
-// The common rectified frame "rect": a pinhole at each camera centre, x axis along the baseline from
-// camera 1 to camera 2, z axis between the two viewing directions. A point at depth Z has the
+// The common rectified frame "rect": a pinhole at each camera centre, x axis along the baseline
+// from camera 1 to camera 2, z axis between the two viewing directions. A point at depth Z has the
 // disparity x1 - x2 = focal * baseline / Z > 0.
 struct PairGeometry {
   Camera camera1, camera2;

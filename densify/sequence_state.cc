@@ -11,8 +11,8 @@ namespace colmap_seapoint {
 
 namespace {
 
-constexpr int kMaxSecondTries = 4;          // pictures tried as the second one of a pair
-constexpr double kMinParallaxDeg = 1.0;     // ours: motion can be mere rotation
+constexpr int kMaxSecondTries = 4;       // pictures tried as the second one of a pair
+constexpr double kMinParallaxDeg = 1.0;  // ours: motion can be mere rotation
 
 std::pair<int, int> Ordered(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
@@ -115,8 +115,7 @@ SequenceState::Overlap SequenceState::AssessOverlap(int first) {
     const FeatureMatches matches = Match(previous_first_, first);
     const InfluenceMask mask =
         MakeInfluenceMask(cells, points->points, matches, previous_labels_, radius);
-    overlap.labels =
-        LabelSeaPoints(mask, points->points, matches, previous_labels_, radius);
+    overlap.labels = LabelSeaPoints(mask, points->points, matches, previous_labels_, radius);
     overlap.rate = mask.OverlapRate();
     overlap.closed = mask.marked;
   }
@@ -226,8 +225,8 @@ void SequenceState::DensifyNewAreas(int first, int second) {
     report.num_rea += label == SeaPointLabel::kREA;
   }
   const bool partial = options_.mode == "partial";
-  std::vector<PixelPair> seeds = SeedsFromMatches(
-      first, second, partial ? overlap.labels : std::vector<SeaPointLabel>());
+  std::vector<PixelPair> seeds =
+      SeedsFromMatches(first, second, partial ? overlap.labels : std::vector<SeaPointLabel>());
   AppendModelSeeds(first, second, &seeds);
   PairResult result;
   RunPair(first, second, overlap, std::move(seeds), &report, &result);
@@ -263,8 +262,7 @@ void SequenceState::Complete(int position) {
         candidates.push_back({partner, ViewAt(partner)});
       }
     }
-    const std::vector<double> range =
-        PredictRanges(model_, ImageAt(position), view, coverage);
+    const std::vector<double> range = PredictRanges(model_, ImageAt(position), view, coverage);
     const int partner = SelectCompletionPartner(view, coverage, range, candidates);
     if (partner < 0) return;
     PairReport report = NewReport(position, partner, "completion");

@@ -75,7 +75,7 @@ class SequenceState {
   std::vector<SeaPointLabel> previous_labels_;  // PA / REA, of previous_first_'s SeaPoints
   std::vector<CloudFootprint> footprints_;
   std::set<std::pair<int, int>> densified_pairs_;  // positions, smaller first
-  std::vector<std::vector<int>> covisible_;        // position -> positions, most shared points first
+  std::vector<std::vector<int>> covisible_;  // position -> positions, most shared points first
   SequenceReport report_;
 };
 

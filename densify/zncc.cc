@@ -38,7 +38,8 @@ RightSums SumRows(const int16_t* left, const uint8_t* right, size_t stride, int 
 }
 
 const int16_t* MaskOf(int size) {
-  static const LaneMask masks[] = {LaneMask(5), LaneMask(7), LaneMask(9), LaneMask(11), LaneMask(13), LaneMask(15)};
+  static const LaneMask masks[] = {LaneMask(5),  LaneMask(7),  LaneMask(9),
+                                   LaneMask(11), LaneMask(13), LaneMask(15)};
   return masks[(size - 5) / 2].lanes;
 }
 
@@ -68,8 +69,9 @@ float ZnccReference::Score(const GrayImage& picture, int x, int y) const {
   const int64_t scatter = count * right.squares - static_cast<int64_t>(right.sum) * right.sum;
   if (static_cast<double>(scatter) < kMinVariance * static_cast<double>(count * count)) return -1;
   const int64_t covariance = count * right.products - static_cast<int64_t>(sum_) * right.sum;
-  return static_cast<float>(static_cast<double>(covariance) /
-                            std::sqrt(static_cast<double>(scatter_) * static_cast<double>(scatter)));
+  return static_cast<float>(
+      static_cast<double>(covariance) /
+      std::sqrt(static_cast<double>(scatter_) * static_cast<double>(scatter)));
 }
 
 }  // namespace colmap_seapoint

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr size_t kMaxImagesForAllPairs = 50;
 // Raise it whenever the same options give other results than before.
 constexpr char kMatchingVersion[] = "1";
-constexpr char kMapperVersion[] = "1";
+constexpr char kMapperVersion[] = "2";
 constexpr char kDensificationVersion[] = "1";
 
 std::string HashText(const std::string& text) { return HashBytes(text.data(), text.size()); }
@@ -70,6 +70,7 @@ class Reconstruction {
  private:
   std::string PicturesFingerprint(const std::vector<ReadablePicture>& pictures) const;
   bool MatchesAllPairs() const;
+  bool AdjustsPrincipalPoint() const;
   std::string MapperFingerprint() const;
   void AddReport(const RunReport& part);
   void ReadModels();
@@ -154,11 +155,19 @@ void Reconstruction::MatchFeatures() {
               "take pictures that overlap more, or raise --SeaPointExtraction.max_num_features");
 }
 
+// Not where the user says what the lens is, or what of it is to be refined.
+bool Reconstruction::AdjustsPrincipalPoint() const {
+  if (!options_.adjust_principal_point || !options_.reader.camera_params.empty()) return false;
+  const auto refinement = options_.mapper.lower_bound("Mapper.ba_refine");
+  return refinement == options_.mapper.end() || refinement->first.rfind("Mapper.ba_refine", 0) != 0;
+}
+
 // The mapper's work depends on what the database holds, and on the mapper.
 std::string Reconstruction::MapperFingerprint() const {
   const auto begun = state_.Read("database");
   return HashText(kMapperVersion + DatabaseFingerprint(database_path_) +
                   (begun ? begun->fingerprint : "") + colmap_.version +
+                  (AdjustsPrincipalPoint() ? "adjusted" : "") +
                   OptionsFingerprint({first_round_.begin(), first_round_.end()}) +
                   OptionsFingerprint({later_rounds_.begin(), later_rounds_.end()}));
 }
@@ -176,7 +185,7 @@ void Reconstruction::MapSparsely() {
     {
       StageTimer timer(&part, "mapper");
       RunMapper(colmap_, {database_path_, image_path_, sparse, workspace_ / "report", first_round_,
-                          later_rounds_, matched_pictures_});
+                          later_rounds_, AdjustsPrincipalPoint(), matched_pictures_});
     }
     state_.Finish("mapper", mapper_fingerprint_, part);
   }
@@ -290,6 +299,10 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
              "which pairs are tried; auto = all pairs of up to " +
                  std::to_string(kMaxImagesForAllPairs) + " pictures, else sequential",
              "ours", {"auto", "sequential", "exhaustive"});
+  table->Add("adjust_principal_point", &adjust_principal_point,
+             "after mapping, adjust every model once more with the principal point free; not with "
+             "--ImageReader.camera_params or --Mapper.ba_refine_*",
+             "ours");
   reader.Bind(table);
   extraction.Bind(table);
   pairs.Bind(table);

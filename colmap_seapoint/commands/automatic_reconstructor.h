@@ -20,6 +20,7 @@ struct AutomaticReconstructorOptions {
   std::string workspace_path;
   std::string colmap_path = "colmap";
   std::string matcher = "auto";
+  bool adjust_principal_point = true;
   ImageReaderOptions reader;
   SeaPointExtractionOptions extraction;
   SequentialPairOptions pairs;

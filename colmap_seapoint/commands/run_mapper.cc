@@ -9,6 +9,7 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/natural_order.h"
 #include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/commands/adjust_principal_point.h"
 #include "colmap_seapoint/io/atomic_file.h"
 #include "colmap_seapoint/io/colmap_model.h"
 #include "colmap_seapoint/io/subprocess.h"
@@ -20,6 +21,8 @@ namespace fs = std::filesystem;
 
 constexpr int kMaxRounds = 5;
 constexpr size_t kMinPicturesOfModel = 3;
+// Relaxed thresholds let pass models of a handful of chance points.
+constexpr size_t kMinPointsOfModel = 50;
 
 void RemoveAll(const fs::path& path) {
   std::error_code error;
@@ -115,12 +118,14 @@ class MapperRounds {
     std::vector<fs::path> models = ListModels(output);
     if (!CheckResult(result, last_line, !models.empty(), round)) models.clear();
     const size_t num_before = missing_.size();
+    const int num_models_before = num_models_;
     for (const fs::path& model : models) TakeModel(model);
     RemoveAll(output);
+    const int num_taken = num_models_ - num_models_before;
     LogInfo("Mapper, round " + std::to_string(round) + ": " +
             std::to_string(num_before - missing_.size()) + " of " + std::to_string(num_before) +
-            " pictures in " + std::to_string(models.size()) + " models");
-    return !models.empty();
+            " pictures in " + std::to_string(num_taken) + " models");
+    return num_taken > 0;
   }
 
   // Whether what the mapper left can be used. Having found no model is no failure here: COLMAP 3.8
@@ -144,8 +149,15 @@ class MapperRounds {
   }
 
   void TakeModel(const fs::path& model) {
-    for (const PosedImage& image : ReadSparseModel(model).images) missing_.erase(image.name);
-    Rename(model, folder_ / std::to_string(num_models_++));
+    const SparseModel sparse = ReadSparseModel(model);
+    if (sparse.points3D.size() < kMinPointsOfModel) return;
+    for (const PosedImage& image : sparse.images) missing_.erase(image.name);
+    const std::string name = std::to_string(num_models_++);
+    if (job_.adjust_principal_point) {
+      const fs::path log = job_.log_folder / ("bundle_adjuster_" + name + ".log");
+      LogInfo("Lens of model " + name + ": " + AdjustPrincipalPoint(colmap_, model, log));
+    }
+    Rename(model, folder_ / name);
   }
 
   const ColmapProgram& colmap_;
