@@ -53,6 +53,7 @@ std::vector<LocalMaximum> SuppressNonMaxima(const FloatImage& map, const GrayIma
 
 // Remaps to 0..255 by the extremes of the whole map (paper 2.3).
 void Remap(const FloatImage& map, std::vector<LocalMaximum>* maxima) {
+  if (maxima->empty()) return;
   const auto [lowest, highest] = std::minmax_element(map.data.begin(), map.data.end());
   const double scale = 255.0 / (static_cast<double>(*highest) - *lowest);
   for (LocalMaximum& maximum : *maxima) {
