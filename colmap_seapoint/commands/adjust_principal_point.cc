@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMaxFocalChange = 0.2;           // share of the focal length
-constexpr double kMaxPrincipalPointChange = 0.1;  // share of the longer side
+constexpr double kMaxFocalChange = 0.2;            // share of the focal length
+constexpr double kMaxPrincipalPointChange = 0.05;  // share of the longer side
 
 // Root mean square over all observations of triangulated points, pixels.
 double ReprojectionError(const SparseModel& model) {

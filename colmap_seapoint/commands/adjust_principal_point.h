@@ -12,8 +12,8 @@ namespace colmap_seapoint {
 
 // Runs `colmap bundle_adjuster` on `model` and puts the result in its place when it is sound: the
 // same pictures, no larger reprojection error, focal lengths within a fifth and principal points
-// within a tenth of the picture's longer side of what they were. Returns what happened, one line;
-// the model is as it was when the adjuster is missing, fails, or returns something unsound.
+// within a twentieth of the picture's longer side of what they were. Returns what happened, one
+// line; the model is as it was when the adjuster is missing, fails, or returns something unsound.
 std::string AdjustPrincipalPoint(const ColmapProgram& colmap, const std::filesystem::path& model,
                                  const std::filesystem::path& log_path);
 

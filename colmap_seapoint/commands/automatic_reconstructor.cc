@@ -12,11 +12,13 @@
 #include "colmap_seapoint/commands/prepare_database.h"
 #include "colmap_seapoint/commands/reconstruction_summary.h"
 #include "colmap_seapoint/commands/run_mapper.h"
+#include "colmap_seapoint/commands/second_chance.h"
 #include "colmap_seapoint/commands/workspace_state.h"
 #include "colmap_seapoint/io/atomic_file.h"
 #include "colmap_seapoint/io/colmap_database.h"
 #include "colmap_seapoint/io/colmap_model.h"
 #include "colmap_seapoint/io/fnv1a.h"
+#include "colmap_seapoint/io/image_file.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -63,6 +65,8 @@ class Reconstruction {
 
   void ExtractFeatures();
   void MatchFeatures();
+  // True when pictures were found that deserve SI-SeaPoints: extract and match once more.
+  bool FindSecondChances();
   void MapSparsely();
   void DensifyModels();
   RunReport WriteReport();
@@ -71,6 +75,7 @@ class Reconstruction {
   std::string PicturesFingerprint(const std::vector<ReadablePicture>& pictures) const;
   bool MatchesAllPairs() const;
   bool AdjustsPrincipalPoint() const;
+  std::string SecondChanceFingerprint() const;
   std::string MapperFingerprint() const;
   void AddReport(const RunReport& part);
   void ReadModels();
@@ -132,10 +137,40 @@ void Reconstruction::ExtractFeatures() {
     PrepareDatabase(database_path_, pictures, options_.reader, PicturesFingerprint(pictures),
                     &state_);
   };
+  // Known from an earlier run already, or found by this one.
+  if (const auto known = state_.ReadIfDone("second_chance", SecondChanceFingerprint())) {
+    for (const RunReport::Input& picture : known->inputs) {
+      extractor.second_chance.insert(picture.name);
+    }
+  }
   const RunReport part = ExtractPictures(extractor, prepare);
   report_.images_in = part.images_in;
   report_.inputs = part.inputs;
   AddReport(part);
+}
+
+// Of all that decides which pictures stay untied.
+std::string Reconstruction::SecondChanceFingerprint() const {
+  std::string text = OptionsFingerprint(OptionValues(options_.extraction)) +
+                     OptionsFingerprint(OptionValues(options_.matching));
+  for (const std::string& name : ListImages(image_path_)) text += "\n" + name;
+  return HashText(text);
+}
+
+bool Reconstruction::FindSecondChances() {
+  if (options_.extraction.num_levels > 1) return false;
+  const std::string fingerprint = SecondChanceFingerprint();
+  if (state_.ReadIfDone("second_chance", fingerprint)) return false;
+  RunReport found;
+  for (const std::string& name : FindSecondChancePictures(database_path_)) {
+    found.inputs.push_back({name, 0, ""});
+  }
+  const size_t count = found.inputs.size();
+  state_.Finish("second_chance", fingerprint, found);
+  if (count == 0) return false;
+  LogInfo(std::to_string(count) +
+          " pictures are untied, or next to one that is: SI-SeaPoints for them");
+  return true;
 }
 
 void Reconstruction::MatchFeatures() {
@@ -150,9 +185,6 @@ void Reconstruction::MatchFeatures() {
   exhaustive.run = options_.run;
   AddReport(MatchesAllPairs() ? MatchExhaustively(exhaustive) : MatchSequentially(sequential));
   matched_pictures_ = MatchedPictures(database_path_);
-  if (!matched_pictures_.empty()) return;
-  throw Error(options_.image_path, "no two of its pictures show the same place",
-              "take pictures that overlap more, or raise --SeaPointExtraction.max_num_features");
 }
 
 // Not where the user says what the lens is, or what of it is to be refined.
@@ -173,6 +205,10 @@ std::string Reconstruction::MapperFingerprint() const {
 }
 
 void Reconstruction::MapSparsely() {
+  if (matched_pictures_.empty()) {
+    throw Error(options_.image_path, "no two of its pictures show the same place",
+                "take pictures that overlap more, or raise --SeaPointExtraction.max_num_features");
+  }
   mapper_fingerprint_ = MapperFingerprint();
   const fs::path sparse = workspace_ / "sparse";
   RunReport part;
@@ -316,6 +352,10 @@ ExitCode RunAutomaticReconstructor(const AutomaticReconstructorOptions& options)
   Reconstruction reconstruction(options);
   reconstruction.ExtractFeatures();
   reconstruction.MatchFeatures();
+  if (reconstruction.FindSecondChances()) {
+    reconstruction.ExtractFeatures();
+    reconstruction.MatchFeatures();
+  }
   reconstruction.MapSparsely();
   reconstruction.DensifyModels();
   return ExitCodeOf(reconstruction.WriteReport());

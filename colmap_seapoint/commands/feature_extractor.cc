@@ -31,7 +31,10 @@ struct Extracted {
 class Extractor {
  public:
   explicit Extractor(const FeatureExtractorOptions& options)
-      : options_(options), options_hash_(OptionsFingerprint(OptionValues(options.extraction))) {}
+      : options_(options), usual_(options.extraction), second_chance_(options.extraction) {
+    second_chance_.options.num_levels = kSecondChanceLevels;
+    second_chance_.hash = OptionsFingerprint(OptionValues(second_chance_.options));
+  }
 
   // Called from several threads at once. `stored`: the fingerprint in the database.
   Extracted Extract(const std::string& name, const std::optional<std::string>& stored) const {
@@ -39,8 +42,9 @@ class Extractor {
     Extracted result;
     result.input = DescribeInput(name, picture_path);
     const std::filesystem::path mask_path = MaskPath(name);
+    const Extraction& extraction = options_.second_chance.count(name) > 0 ? second_chance_ : usual_;
     result.fingerprint = kExtractionVersion + (":" + std::to_string(result.input.size)) + ":" +
-                         result.input.hash + ":" + MaskHash(mask_path) + ":" + options_hash_;
+                         result.input.hash + ":" + MaskHash(mask_path) + ":" + extraction.hash;
     if (stored == result.fingerprint) {
       result.is_unchanged = true;
       return result;
@@ -48,7 +52,7 @@ class Extractor {
     try {
       const GrayImage picture = ReadGrayImage(picture_path);
       const GrayImage mask = ReadMask(mask_path, picture);
-      result.features = ExtractFeatures(picture, mask, options_.extraction).features;
+      result.features = ExtractFeatures(picture, mask, extraction.options).features;
       if (result.features.points.empty()) result.reason = kNoSeaPoint;
     } catch (const Error& error) {
       result.reason = error.Finding();
@@ -58,6 +62,13 @@ class Extractor {
   }
 
  private:
+  struct Extraction {
+    explicit Extraction(const SeaPointExtractionOptions& extraction_options)
+        : options(extraction_options), hash(OptionsFingerprint(OptionValues(extraction_options))) {}
+    SeaPointExtractionOptions options;
+    std::string hash;
+  };
+
   // Empty when there is none, as in COLMAP.
   std::filesystem::path MaskPath(const std::string& name) const {
     if (options_.reader.mask_path.empty()) return {};
@@ -84,7 +95,7 @@ class Extractor {
   }
 
   const FeatureExtractorOptions& options_;
-  std::string options_hash_;
+  Extraction usual_, second_chance_;
 };
 
 void Validate(const FeatureExtractorOptions& options) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,10 +19,14 @@ struct FeatureExtractorOptions {
   std::string image_list_path;
   ImageReaderOptions reader;
   SeaPointExtractionOptions extraction;
+  // Pictures that get SI-SeaPoints of kSecondChanceLevels levels instead (see second_chance.h).
+  std::set<std::string> second_chance;
   RunOptions run;
 
   void Bind(OptionTable* table);
 };
+
+inline constexpr int kSecondChanceLevels = 5;
 
 // Extracts the pictures whose file, mask or options changed, and leaves the others alone.
 // `before_database` sees the readable pictures before the database is opened (or created). Also
