@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
 #include <system_error>
+#include <vector>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/sparse_model.h"
+#include "colmap_seapoint/io/atomic_file.h"
 #include "colmap_seapoint/io/colmap_model.h"
 #include "colmap_seapoint/io/subprocess.h"
 
@@ -15,7 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMaxFocalChange = 0.2;            // share of the focal length
+constexpr double kMaxFocalChange = 0.2;  // share of the focal length
+constexpr size_t kMinPictures = 3;
+// A few observations come in anew.
+constexpr double kMaxErrorGrowth = 1.02;
 constexpr double kMaxPrincipalPointChange = 0.05;  // share of the longer side
 
 // Root mean square over all observations of triangulated points, pixels.
@@ -60,7 +66,9 @@ std::string Fault(const SparseModel& before, const SparseModel& after) {
     const std::string fault = LensFault(camera, found->second);
     if (!fault.empty()) return fault;
   }
-  if (ReprojectionError(after) > ReprojectionError(before)) return "the error grew";
+  if (ReprojectionError(after) > kMaxErrorGrowth * ReprojectionError(before)) {
+    return "the error grew";
+  }
   return "";
 }
 
@@ -75,24 +83,80 @@ std::string Outcome(const SparseModel& before, const SparseModel& after) {
   return text;
 }
 
+size_t NumPointsSeen(const PosedImage& image) {
+  return image.point3D_ids.size() -
+         static_cast<size_t>(
+             std::count(image.point3D_ids.begin(), image.point3D_ids.end(), kNoPoint3D));
+}
+
+// The picture that the mapper will find again most surely.
+uint32_t MostSeeing(const SparseModel& model) {
+  const auto most = std::max_element(
+      model.images.begin(), model.images.end(),
+      [](const auto& a, const auto& b) { return NumPointsSeen(a) < NumPointsSeen(b); });
+  return most->image_id;
+}
+
+SparseModel WithoutPicture(SparseModel model, uint32_t image_id) {
+  std::set<uint64_t> lost;  // points that one picture alone would see
+  for (auto& [id, point] : model.points3D) {
+    auto& track = point.track;
+    const auto is_gone = [&](const auto& element) { return element.image_id == image_id; };
+    track.erase(std::remove_if(track.begin(), track.end(), is_gone), track.end());
+    if (track.size() < 2) lost.insert(id);
+  }
+  for (uint64_t id : lost) model.points3D.erase(id);
+  const auto is_gone = [&](const PosedImage& image) { return image.image_id == image_id; };
+  model.images.erase(std::remove_if(model.images.begin(), model.images.end(), is_gone),
+                     model.images.end());
+  for (PosedImage& image : model.images) {
+    for (uint64_t& id : image.point3D_ids) {
+      if (lost.count(id) > 0) id = kNoPoint3D;
+    }
+  }
+  return model;
+}
+
+std::vector<std::string> Arguments(const AdjustmentJob& job, const SparseModel& model,
+                                   const fs::path& input, const fs::path& output) {
+  // Else the mapper would go on to pictures that are not the model's.
+  std::string names;
+  for (const PosedImage& image : model.images) names += image.name + "\n";
+  const fs::path list = input / "pictures.txt";
+  WriteTextFile(list, names);
+  MapperOptions options = job.options;
+  options["Mapper.ba_refine_principal_point"] = "1";
+  std::vector<std::string> arguments = {
+      "mapper",        "--database_path",       job.database_path.string(),
+      "--image_path",  job.image_path.string(), "--image_list_path",
+      list.string(),   "--input_path",          input.string(),
+      "--output_path", output.string()};
+  for (const auto& [name, value] : options) {
+    arguments.insert(arguments.end(), {"--" + name, value});
+  }
+  return arguments;
+}
+
 }  // namespace
 
-std::string AdjustPrincipalPoint(const ColmapProgram& colmap, const fs::path& model,
-                                 const fs::path& log_path) {
-  const fs::path adjusted = model.string() + ".adjusted";
+std::string AdjustPrincipalPoint(const ColmapProgram& colmap, const AdjustmentJob& job,
+                                 const fs::path& model) {
+  const SparseModel before = ReadSparseModel(model);
+  if (before.images.size() < kMinPictures) return "left as the mapper found it: too few pictures";
+  const fs::path reduced = model.string() + ".reduced", adjusted = model.string() + ".adjusted";
   std::error_code error;
-  fs::remove_all(adjusted, error);
-  fs::create_directories(adjusted);
-  const auto result =
-      RunSubprocess(colmap.path,
-                    {"bundle_adjuster", "--input_path", model.string(), "--output_path",
-                     adjusted.string(), "--BundleAdjustment.refine_principal_point", "1"},
-                    log_path, [](const std::string&) {});
+  for (const fs::path& folder : {reduced, adjusted}) {
+    fs::remove_all(folder, error);
+    fs::create_directories(folder);
+  }
+  WriteSparseModelBinary(reduced, WithoutPicture(before, MostSeeing(before)));
+  const auto result = RunSubprocess(colmap.path, Arguments(job, before, reduced, adjusted),
+                                    job.log_path, [](const std::string&) {});
   std::string outcome;
   if (!result.Succeeded() || !IsSparseModel(adjusted)) {
-    outcome = "left as the mapper found it: the bundle adjuster failed (" + result.Text() + ")";
+    outcome = "left as the mapper found it: the adjustment failed (" + result.Text() + ")";
   } else {
-    const SparseModel before = ReadSparseModel(model), after = ReadSparseModel(adjusted);
+    const SparseModel after = ReadSparseModel(adjusted);
     const std::string fault = Fault(before, after);
     if (fault.empty()) {
       WriteSparseModelBinary(model, after);
@@ -101,7 +165,7 @@ std::string AdjustPrincipalPoint(const ColmapProgram& colmap, const fs::path& mo
       outcome = "left as the mapper found it: " + fault;
     }
   }
-  fs::remove_all(adjusted, error);
+  for (const fs::path& folder : {reduced, adjusted}) fs::remove_all(folder, error);
   return outcome;
 }
 

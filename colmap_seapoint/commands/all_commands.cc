@@ -17,7 +17,7 @@ std::vector<Command> AllCommands() {
       MakeCommand("partial_densifier", "COLMAP model and pictures -> one dense cloud",
                   RunPartialDensifier),
       MakeCommand("automatic_reconstructor", "a folder of pictures -> dense clouds, all in one",
-                  RunAutomaticReconstructor, "Mapper", &AutomaticReconstructorOptions::mapper),
+                  RunAutomaticReconstructor),
   };
 }
 

@@ -18,7 +18,6 @@
 #include "colmap_seapoint/io/colmap_database.h"
 #include "colmap_seapoint/io/colmap_model.h"
 #include "colmap_seapoint/io/fnv1a.h"
-#include "colmap_seapoint/io/image_file.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -29,7 +28,7 @@ namespace fs = std::filesystem;
 constexpr size_t kMaxImagesForAllPairs = 50;
 // Raise it whenever the same options give other results than before.
 constexpr char kMatchingVersion[] = "1";
-constexpr char kMapperVersion[] = "2";
+constexpr char kMapperVersion[] = "3";
 constexpr char kDensificationVersion[] = "1";
 
 std::string HashText(const std::string& text) { return HashBytes(text.data(), text.size()); }
@@ -75,7 +74,8 @@ class Reconstruction {
   std::string PicturesFingerprint(const std::vector<ReadablePicture>& pictures) const;
   bool MatchesAllPairs() const;
   bool AdjustsPrincipalPoint() const;
-  std::string SecondChanceFingerprint() const;
+  std::string SecondChanceFingerprint(const std::string& pictures_fingerprint,
+                                      const std::vector<ReadablePicture>& pictures) const;
   std::string MapperFingerprint() const;
   void AddReport(const RunReport& part);
   void ReadModels();
@@ -90,7 +90,7 @@ class Reconstruction {
   RunReport report_;
   size_t num_readable_ = 0;
   std::vector<std::string> matched_pictures_;
-  std::string mapper_fingerprint_;
+  std::string second_chance_fingerprint_, mapper_fingerprint_;
   std::vector<ModelSummary> models_;
 };
 
@@ -134,32 +134,39 @@ void Reconstruction::ExtractFeatures() {
   extractor.run = options_.run;
   const auto prepare = [&](const std::vector<ReadablePicture>& pictures) {
     num_readable_ = pictures.size();
-    PrepareDatabase(database_path_, pictures, options_.reader, PicturesFingerprint(pictures),
-                    &state_);
-  };
-  // Known from an earlier run already, or found by this one.
-  if (const auto known = state_.ReadIfDone("second_chance", SecondChanceFingerprint())) {
-    for (const RunReport::Input& picture : known->inputs) {
-      extractor.second_chance.insert(picture.name);
+    const std::string fingerprint = PicturesFingerprint(pictures);
+    PrepareDatabase(database_path_, pictures, options_.reader, fingerprint, &state_);
+    second_chance_fingerprint_ = SecondChanceFingerprint(fingerprint, pictures);
+    // Known from an earlier run already, or found by this one.
+    std::set<std::string> names;
+    if (const auto known = state_.ReadIfDone("second_chance", second_chance_fingerprint_)) {
+      for (const RunReport::Input& picture : known->inputs) names.insert(picture.name);
     }
-  }
+    return names;
+  };
   const RunReport part = ExtractPictures(extractor, prepare);
   report_.images_in = part.images_in;
   report_.inputs = part.inputs;
   AddReport(part);
 }
 
-// Of all that decides which pictures stay untied.
-std::string Reconstruction::SecondChanceFingerprint() const {
-  std::string text = OptionsFingerprint(OptionValues(options_.extraction)) +
-                     OptionsFingerprint(OptionValues(options_.matching));
-  for (const std::string& name : ListImages(image_path_)) text += "\n" + name;
+// Of all that decides which pictures stay untied. A picture counts as another one when its size or
+// its time of change differs: to look once more costs time only.
+std::string Reconstruction::SecondChanceFingerprint(
+    const std::string& pictures_fingerprint, const std::vector<ReadablePicture>& pictures) const {
+  std::string text = pictures_fingerprint + OptionsFingerprint(OptionValues(options_.extraction));
+  for (const ReadablePicture& picture : pictures) {
+    std::error_code error;
+    const fs::path path = image_path_ / picture.name;
+    text += "\n" + std::to_string(fs::file_size(path, error)) + " " +
+            std::to_string(fs::last_write_time(path, error).time_since_epoch().count());
+  }
   return HashText(text);
 }
 
 bool Reconstruction::FindSecondChances() {
   if (options_.extraction.num_levels > 1) return false;
-  const std::string fingerprint = SecondChanceFingerprint();
+  const std::string& fingerprint = second_chance_fingerprint_;
   if (state_.ReadIfDone("second_chance", fingerprint)) return false;
   RunReport found;
   for (const std::string& name : FindSecondChancePictures(database_path_)) {
@@ -345,6 +352,13 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
   matching.Bind(table);
   densification.Bind(table);
   run.Bind(table);
+}
+
+ForeignOptions AutomaticReconstructorOptions::Foreign() {
+  return {"Mapper",
+          "handed on to colmap ('colmap mapper -h' lists them); Mapper.num_threads is 1 unless "
+          "given, since the mapper's result differs from run to run with more",
+          &mapper};
 }
 
 ExitCode RunAutomaticReconstructor(const AutomaticReconstructorOptions& options) {

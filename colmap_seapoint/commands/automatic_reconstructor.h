@@ -30,6 +30,7 @@ struct AutomaticReconstructorOptions {
   RunOptions run;
 
   void Bind(OptionTable* table);
+  ForeignOptions Foreign();
 };
 
 ExitCode RunAutomaticReconstructor(const AutomaticReconstructorOptions& options);

@@ -5,6 +5,8 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "colmap_seapoint/base/options.h"
@@ -13,9 +15,17 @@ namespace colmap_seapoint {
 
 // Options of a group that are not ours: kept as typed, for another program.
 struct ForeignOptions {
-  std::string group;                                     // "Mapper"; empty = none are taken
+  std::string group;  // "Mapper"; empty = none are taken
+  std::string help;
   std::map<std::string, std::string>* values = nullptr;  // "Mapper.min_model_size" -> "5"
 };
+
+// Whether an options struct has ForeignOptions Foreign().
+template <typename Options, typename = void>
+inline constexpr bool kTakesForeignOptions = false;
+template <typename Options>
+inline constexpr bool
+    kTakesForeignOptions<Options, std::void_t<decltype(std::declval<Options>().Foreign())>> = true;
 
 enum ExitCode : int { kDone = 0, kFailed = 1, kWrongUsage = 2, kIncomplete = 3 };
 
@@ -32,19 +42,16 @@ struct Command {
 std::vector<Command> AllCommands();
 
 // `Options` has Bind(OptionTable*); `run` validates, reads, calls a stage, writes and reports.
-// `foreign_values`: the member that takes the options of `foreign_group`.
 template <typename Options>
 Command MakeCommand(const std::string& name, const std::string& summary,
-                    ExitCode (*run)(const Options&), const std::string& foreign_group = "",
-                    std::map<std::string, std::string> Options::*foreign_values = nullptr) {
+                    ExitCode (*run)(const Options&)) {
   auto options = std::make_shared<Options>();
   Command command;
   command.name = name;
   command.summary = summary;
   command.bind = [options](OptionTable* table) { options->Bind(table); };
   command.run = [options, run] { return run(*options); };
-  command.foreign.group = foreign_group;
-  if (foreign_values != nullptr) command.foreign.values = &((*options).*foreign_values);
+  if constexpr (kTakesForeignOptions<Options>) command.foreign = options->Foreign();
   return command;
 }
 

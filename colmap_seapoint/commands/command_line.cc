@@ -207,8 +207,8 @@ void PrintCommandHelp(const Command& command, const OptionTable& table, std::ost
     PrintWrapped(option.help + (legal.empty() ? "" : "; " + legal) + "; " + option.origin, out);
   }
   if (!command.foreign.group.empty()) {
-    out << "  --" << command.foreign.group << ".<option> VALUE\n"
-        << "        handed on to colmap ('colmap mapper -h' lists them)\n";
+    out << "  --" << command.foreign.group << ".<option> VALUE\n";
+    PrintWrapped(command.foreign.help, out);
   }
 }
 

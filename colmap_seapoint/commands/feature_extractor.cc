@@ -30,8 +30,11 @@ struct Extracted {
 // What a picture's SeaPoints depend on is fixed for the whole run, but for the picture itself.
 class Extractor {
  public:
-  explicit Extractor(const FeatureExtractorOptions& options)
-      : options_(options), usual_(options.extraction), second_chance_(options.extraction) {
+  Extractor(const FeatureExtractorOptions& options, std::set<std::string> second_chance_names)
+      : options_(options),
+        second_chance_names_(std::move(second_chance_names)),
+        usual_(options.extraction),
+        second_chance_(options.extraction) {
     second_chance_.options.num_levels = kSecondChanceLevels;
     second_chance_.hash = OptionsFingerprint(OptionValues(second_chance_.options));
   }
@@ -42,7 +45,7 @@ class Extractor {
     Extracted result;
     result.input = DescribeInput(name, picture_path);
     const std::filesystem::path mask_path = MaskPath(name);
-    const Extraction& extraction = options_.second_chance.count(name) > 0 ? second_chance_ : usual_;
+    const Extraction& extraction = second_chance_names_.count(name) > 0 ? second_chance_ : usual_;
     result.fingerprint = kExtractionVersion + (":" + std::to_string(result.input.size)) + ":" +
                          result.input.hash + ":" + MaskHash(mask_path) + ":" + extraction.hash;
     if (stored == result.fingerprint) {
@@ -95,6 +98,7 @@ class Extractor {
   }
 
   const FeatureExtractorOptions& options_;
+  std::set<std::string> second_chance_names_;
   Extraction usual_, second_chance_;
 };
 
@@ -123,15 +127,13 @@ void RefuseForeignKeypoints(const std::string& database_path,
   }
 }
 
-void ExtractAll(const FeatureExtractorOptions& options,
+void ExtractAll(const Extractor& extractor, int num_threads,
                 const std::vector<RegisteredPicture>& pictures, ColmapDatabase* database,
                 RunReport* report) {
   std::vector<std::optional<std::string>> stored;
   for (const RegisteredPicture& picture : pictures) {
     stored.push_back(database->FeaturesFingerprint(picture.image_id));
   }
-  const Extractor extractor(options);
-  const int num_threads = EffectiveNumThreads(options.run.num_threads);
   const auto count = static_cast<int64_t>(pictures.size());
   int64_t num_unchanged = 0;
   Progress progress("SeaPoints of pictures", count);
@@ -176,9 +178,8 @@ void FeatureExtractorOptions::Bind(OptionTable* table) {
   run.Bind(table);
 }
 
-RunReport ExtractPictures(
-    const FeatureExtractorOptions& options,
-    const std::function<void(const std::vector<ReadablePicture>&)>& before_database) {
+RunReport ExtractPictures(const FeatureExtractorOptions& options,
+                          const PrepareExtraction& prepare) {
   Validate(options);
   RunReport report = StartReport("feature_extractor", options, options.run);
   const auto names = ListPictures(options.image_path, options.image_list_path, &report);
@@ -186,11 +187,12 @@ RunReport ExtractPictures(
     StageTimer timer(&report, "feature_extractor");
     const auto pictures = ReadHeaders(options.image_path, names, options.run.num_threads, &report);
     if (!pictures.empty()) {
-      if (before_database) before_database(pictures);
+      const Extractor extractor(options, prepare ? prepare(pictures) : std::set<std::string>());
       ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kCreateIfMissing);
       RefuseForeignKeypoints(options.database_path, pictures, database);
       const auto registered = RegisterPictures(pictures, options.reader, &database, &report);
-      ExtractAll(options, registered, &database, &report);
+      ExtractAll(extractor, EffectiveNumThreads(options.run.num_threads), registered, &database,
+                 &report);
     }
   }
   WriteRunReport(options.database_path + ".feature_extractor.run.json", report);

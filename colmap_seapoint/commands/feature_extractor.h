@@ -19,8 +19,6 @@ struct FeatureExtractorOptions {
   std::string image_list_path;
   ImageReaderOptions reader;
   SeaPointExtractionOptions extraction;
-  // Pictures that get SI-SeaPoints of kSecondChanceLevels levels instead (see second_chance.h).
-  std::set<std::string> second_chance;
   RunOptions run;
 
   void Bind(OptionTable* table);
@@ -28,13 +26,16 @@ struct FeatureExtractorOptions {
 
 inline constexpr int kSecondChanceLevels = 5;
 
-// Extracts the pictures whose file, mask or options changed, and leaves the others alone.
-// `before_database` sees the readable pictures before the database is opened (or created). Also
+// Sees the readable pictures before the database is opened (or created). Returns the names of those
+// that get SI-SeaPoints of kSecondChanceLevels levels instead (see second_chance.h).
+using PrepareExtraction =
+    std::function<std::set<std::string>(const std::vector<ReadablePicture>& pictures)>;
+
+// Extracts the pictures whose file, mask or options changed, and leaves the others alone. Also
 // writes <database>.feature_extractor.run.json. Throws Error when no picture is usable, or when the
 // database holds keypoints of other software for one of them (nothing is written then).
-RunReport ExtractPictures(
-    const FeatureExtractorOptions& options,
-    const std::function<void(const std::vector<ReadablePicture>&)>& before_database = {});
+RunReport ExtractPictures(const FeatureExtractorOptions& options,
+                          const PrepareExtraction& prepare = {});
 
 ExitCode RunFeatureExtractor(const FeatureExtractorOptions& options);
 

@@ -1,5 +1,6 @@
 #include "colmap_seapoint/commands/partial_densifier.h"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <set>
@@ -45,15 +46,23 @@ void CheckPictures(const PartialDensifierOptions& options, const SparseModel& mo
 }
 
 // The hash of a whole survey takes as long as reading it: on all threads.
-void DescribePictures(const PartialDensifierOptions& options, const SparseModel& model,
-                      RunReport* report) {
-  std::vector<RunReport::Input> inputs(model.images.size());
-  ParallelFor(options.run.num_threads, static_cast<int64_t>(inputs.size()), [&](int64_t i) {
-    const std::string& name = model.images[static_cast<size_t>(i)].name;
-    inputs[static_cast<size_t>(i)] =
-        DescribeInput(name, std::filesystem::path(options.image_path) / name);
+void DescribeInputs(const PartialDensifierOptions& options, const SparseModel& model,
+                    RunReport* report) {
+  std::vector<std::pair<std::string, std::filesystem::path>> files;
+  for (const PosedImage& image : model.images) {
+    files.emplace_back(image.name, std::filesystem::path(options.image_path) / image.name);
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(options.input_path)) {
+    const std::string extension = entry.path().extension().string();
+    if (extension != ".bin" && extension != ".txt") continue;
+    files.emplace_back(entry.path().string(), entry.path());
+  }
+  std::sort(files.begin() + static_cast<std::ptrdiff_t>(model.images.size()), files.end());
+  report->inputs.resize(files.size());
+  ParallelFor(options.run.num_threads, static_cast<int64_t>(files.size()), [&](int64_t index) {
+    const auto i = static_cast<size_t>(index);
+    report->inputs[i] = DescribeInput(files[i].first, files[i].second);
   });
-  report->inputs.insert(report->inputs.end(), inputs.begin(), inputs.end());
 }
 
 // Seconds of each stage over all pairs: wall time on the threads that did the work.
@@ -134,7 +143,7 @@ RunReport DensifyModel(const PartialDensifierOptions& options) {
                  " holds SeaPoints of no picture of the model: they are "
                  "found again");
     }
-    DescribePictures(options, model, &report);
+    DescribeInputs(options, model, &report);
     CloudWriter cloud(output / "fused.ply");
     sequence = Densify(options, model, &pictures, &cloud);
     FillReport(model, sequence, &report);

@@ -84,6 +84,10 @@ class MapperRounds {
     return job_.log_folder / ("mapper_" + std::to_string(round) + ".log");
   }
 
+  const MapperOptions& OptionsOf(int round) const {
+    return round == 1 ? job_.first_round : job_.later_rounds;
+  }
+
   std::vector<std::string> Arguments(int round, const fs::path& output) const {
     std::vector<std::string> arguments = {
         "mapper",       "--database_path",        job_.database_path.string(),
@@ -96,7 +100,7 @@ class MapperRounds {
       WriteTextFile(list, names);
       arguments.insert(arguments.end(), {"--image_list_path", list.string()});
     }
-    for (const auto& [name, value] : round == 1 ? job_.first_round : job_.later_rounds) {
+    for (const auto& [name, value] : OptionsOf(round)) {
       arguments.insert(arguments.end(), {"--" + name, value});
     }
     return arguments;
@@ -119,7 +123,7 @@ class MapperRounds {
     if (!CheckResult(result, last_line, !models.empty(), round)) models.clear();
     const size_t num_before = missing_.size();
     const int num_models_before = num_models_;
-    for (const fs::path& model : models) TakeModel(model);
+    for (const fs::path& model : models) TakeModel(model, OptionsOf(round));
     RemoveAll(output);
     const int num_taken = num_models_ - num_models_before;
     LogInfo("Mapper, round " + std::to_string(round) + ": " +
@@ -148,14 +152,15 @@ class MapperRounds {
                 "read its output in " + LogOf(round).string() + " and run the same command again");
   }
 
-  void TakeModel(const fs::path& model) {
+  void TakeModel(const fs::path& model, const MapperOptions& options) {
     const SparseModel sparse = ReadSparseModel(model);
     if (sparse.points3D.size() < kMinPointsOfModel) return;
     for (const PosedImage& image : sparse.images) missing_.erase(image.name);
     const std::string name = std::to_string(num_models_++);
     if (job_.adjust_principal_point) {
-      const fs::path log = job_.log_folder / ("bundle_adjuster_" + name + ".log");
-      LogInfo("Lens of model " + name + ": " + AdjustPrincipalPoint(colmap_, model, log));
+      const AdjustmentJob adjustment = {job_.database_path, job_.image_path, options,
+                                        job_.log_folder / ("adjustment_" + name + ".log")};
+      LogInfo("Lens of model " + name + ": " + AdjustPrincipalPoint(colmap_, adjustment, model));
     }
     Rename(model, folder_ / name);
   }

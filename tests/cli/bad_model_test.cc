@@ -60,7 +60,7 @@ TEST_F(Densifier, WritesCloudPairsAndReport) {
   const nlohmann::json report = Report();
   EXPECT_EQ(report["images_in"], kNumPictures);
   EXPECT_EQ(report["images_used"], kNumPictures);
-  EXPECT_EQ(report["inputs"].size(), static_cast<size_t>(kNumPictures));
+  EXPECT_EQ(report["inputs"].size(), static_cast<size_t>(kNumPictures) + 3);  // model files too
   const std::string csv = ReadBytes(folder_ / "dense" / "pairs.csv");
   EXPECT_EQ(csv.find("image1,image2,pass,baseline,overlap,num_oa,num_na,num_rea,"), 0u);
   EXPECT_GE(report["pairs"].get<int>(), kNumPictures - 2);

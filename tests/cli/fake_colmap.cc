@@ -3,7 +3,7 @@
 //   model     (default) the exact model of a synthetic strip, from the database's images
 //   partial   ... without the last picture       two_models  ... as two models of half the pictures
 //   two_rounds ... the first half in the first round, the others when they are asked for alone
-//   no_model  ends like COLMAP 3.8 without any   crash       a half-written model, then SIGSEGV
+//   no_model  ends like COLMAP 3.8 without any   crash       a half-written model, then SIGABRT
 // FAKE_COLMAP_SECONDS: how long the mapper takes. FAKE_COLMAP_PID: file that gets its process id.
 #include <signal.h>
 #include <unistd.h>
@@ -34,11 +34,12 @@ std::string Variable(const char* name, const std::string& fallback) {
 }
 
 void PrintHelp() {
-  std::cout << "COLMAP 3.8 (fake)\n\nOptions can either be specified via command-line or by ...\n\n"
-            << "  -h [ --help ] \n  --random_seed arg (=0)\n  --database_path arg\n"
-            << "  --image_path arg\n  --image_list_path arg\n  --output_path arg\n  "
-               "--Mapper.num_threads arg (=-1)\n"
-            << "  --Mapper.min_model_size arg (=10)\n";
+  std::cout
+      << "COLMAP 3.8 (fake)\n\nOptions can either be specified via command-line or by ...\n\n"
+      << "  -h [ --help ] \n  --random_seed arg (=0)\n  --database_path arg\n"
+      << "  --image_path arg\n  --image_list_path arg\n  --input_path arg\n  --output_path arg\n  "
+         "--Mapper.num_threads arg (=-1)\n"
+      << "  --Mapper.min_model_size arg (=10)\n";
 }
 
 PosedImage PoseImage(const DatabaseImage& image, const Camera& camera,
@@ -128,13 +129,18 @@ int RunMapper(std::map<std::string, std::string> options) {
         std::chrono::duration<double>(seconds / static_cast<double>(images.size())));
   }
   const std::string output = options["--output_path"];
+  if (!options["--input_path"].empty()) {
+    // Goes on with a model: here, to what it would have found in the first place.
+    WriteModel(images, database, output);
+    return EXIT_SUCCESS;
+  }
   if (mode == "no_model") {
     std::cerr << "ERROR: failed to create sparse model" << std::endl;
     return EXIT_FAILURE;
   }
   if (mode == "crash") {
     std::ofstream(output + "/half_a_model") << "x";
-    raise(SIGSEGV);
+    raise(SIGABRT);
   }
   if (mode == "partial") images.pop_back();
   if (mode == "two_rounds" && listed.empty()) images.resize(images.size() / 2);
