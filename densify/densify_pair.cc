@@ -26,10 +26,12 @@ bool CellIsFree(const PairInput& input, size_t cell) {
          (input.covered_range.empty() || input.covered_range[cell] == 0);
 }
 
-// The part of picture 1's window that holds free cells, with room for the correlation window; and
+// The part of picture 1's window that holds free cells, with room for the correlation window, and
+// what can grow from the seeds (`growth` pixels; those in covered cells are new objects there); and
 // of picture 2's, the same rows.
-void CutToFreeCells(const PairInput& input, const PairGeometry& geometry, int margin,
-                    RectWindow* window1, RectWindow* window2) {
+void CutToNewAreas(const PairInput& input, const PairGeometry& geometry,
+                   const std::vector<Seed>& seeds, double growth, int margin, RectWindow* window1,
+                   RectWindow* window2) {
   double x_min = 1e30, x_max = -1e30, y_min = 1e30, y_max = -1e30;
   for (size_t cell = 0; cell < input.cells.Size(); ++cell) {
     if (!CellIsFree(input, cell)) continue;
@@ -39,6 +41,12 @@ void CutToFreeCells(const PairInput& input, const PairGeometry& geometry, int ma
     x_max = std::max(x_max, rect->x());
     y_min = std::min(y_min, rect->y());
     y_max = std::max(y_max, rect->y());
+  }
+  for (const Seed& seed : seeds) {
+    x_min = std::min(x_min, seed.x - growth);
+    x_max = std::max(x_max, seed.x + growth);
+    y_min = std::min(y_min, seed.y - growth);
+    y_max = std::max(y_max, seed.y + growth);
   }
   auto cut = [](double low, double high, int* begin, int* size) {
     const double end = std::min<double>(*begin + *size, std::ceil(high));
@@ -166,7 +174,9 @@ PairResult DensifyPair(const PairInput& input, const PartialDensificationOptions
   const Timer rectification_timer;
   RectWindow window1 = WindowOfPicture(*geometry, false);
   RectWindow window2 = WindowOfPicture(*geometry, true);
-  CutToFreeCells(input, *geometry, options.window_size / 2, &window1, &window2);
+  const double longer_side = std::max(input.view1.camera.width, input.view1.camera.height);
+  CutToNewAreas(input, *geometry, seeds, options.max_expansion * longer_side,
+                options.window_size / 2, &window1, &window2);
   const int step = SampleStep(input.view1.camera, options);
   const SampleGrid grid(window1, step);
   if (grid.Size() == 0 || window2.width == 0 || window2.height == 0) {
@@ -181,7 +191,6 @@ PairResult DensifyPair(const PairInput& input, const PartialDensificationOptions
   result.rectification_seconds = rectification_timer.WallSeconds();
 
   const Timer propagation_timer;
-  const double longer_side = std::max(input.view1.camera.width, input.view1.camera.height);
   const PropagationOptions propagation = {
       options.window_size, static_cast<float>(options.min_zncc),
       std::max(1, static_cast<int>(options.max_expansion * longer_side / step))};
