@@ -1,0 +1,332 @@
+#include "densify/densify_pair.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/densify/pair_scene.h"
+
+namespace colmap_seapoint {
+namespace {
+
+constexpr double kDepth = 2;
+
+Camera TestCamera(CameraModel model = CameraModel::kOpenCV) {
+  return MildCamera(model, 420, 480, 360);
+}
+
+// Two pictures 0.3 apart (disparity 63 pixels, parallax 8.5 degrees), turned against each other.
+PairScene SceneOf(const World& world, CameraModel model = CameraModel::kOpenCV) {
+  return PairScene(world, StandAt(TestCamera(model), {-0.15, 0, 0}, {1, -2, 4}),
+                   StandAt(TestCamera(model), {0.15, 0.03, 0.01}, {-2, 1, -3}));
+}
+
+const PairScene& FlatScene() {
+  static const PairScene scene = SceneOf(FlatWorld(kDepth));
+  return scene;
+}
+
+double MedianNormalErrorDeg(const PartialCloud& cloud, const Eigen::Vector3d& truth) {
+  std::vector<double> errors;
+  for (const DensePoint& point : cloud.points) {
+    const double cosine = point.normal.cast<double>().dot(truth);
+    errors.push_back(std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / M_PI);
+  }
+  std::sort(errors.begin(), errors.end());
+  return errors[errors.size() / 2];
+}
+
+TEST(DensifyPairTest, Plane) {
+  for (const CameraModel model :
+       {CameraModel::kOpenCV, CameraModel::kOpenCVFisheye, CameraModel::kPinhole}) {
+    const PairScene scene = SceneOf(FlatWorld(kDepth), model);
+    const PartialDensificationOptions options;
+    const PairResult result = DensifyPair(scene.Input(options), options, 2);
+    EXPECT_EQ(result.failure, "");
+    const double gsd = scene.Gsd(kDepth);
+    const Accuracy accuracy = MeasureAccuracy(scene, result.cloud, gsd);
+    EXPECT_GE(accuracy.half_gsd, 0.72);
+    EXPECT_GE(accuracy.one_gsd, 0.94);
+    EXPECT_GE(accuracy.two_gsd, 0.995);
+    EXPECT_GE(MeasureCoverage(scene, result.cloud, gsd), 0.96);
+    EXPECT_LT(MedianNormalErrorDeg(result.cloud, -Eigen::Vector3d::UnitZ()), 9);
+  }
+}
+
+TEST(DensifyPairTest, SlantedPlane) {
+  for (const double angle_deg : {30.0, -30.0}) {
+    const PairScene scene = SceneOf(SlantedWorld(kDepth, angle_deg));
+    const PartialDensificationOptions options;
+    const PairResult result = DensifyPair(scene.Input(options), options, 2);
+    EXPECT_EQ(result.failure, "");
+    const double gsd = scene.Gsd(kDepth), angle = angle_deg * M_PI / 180;
+    const Accuracy accuracy = MeasureAccuracy(scene, result.cloud, gsd);
+    EXPECT_GE(accuracy.half_gsd, 0.49);
+    EXPECT_GE(accuracy.one_gsd, 0.8);
+    EXPECT_GE(accuracy.two_gsd, 0.98);
+    EXPECT_GE(MeasureCoverage(scene, result.cloud, gsd), 0.96);
+    EXPECT_LT(MedianNormalErrorDeg(result.cloud, {-std::sin(angle), 0, -std::cos(angle)}), 13);
+  }
+}
+
+// Points that lie on neither level nor on the wall, near the step: what a correlation window that
+// sees both levels leaves behind.
+double FringeShare(const PairScene& scene, const PartialCloud& cloud) {
+  const double gsd = scene.Gsd(kDepth);
+  int num_near = 0, num_fringe = 0;
+  for (const DensePoint& point : cloud.points) {
+    if (std::abs(point.xyz.x()) > 20 * gsd) continue;
+    ++num_near;
+    num_fringe += scene.world.Distance(point.xyz.cast<double>()) > 4 * gsd;
+  }
+  return static_cast<double>(num_fringe) / num_near;
+}
+
+TEST(DensifyPairTest, StepWithOcclusion) {
+  for (const int near_sign : {-1, 1}) {
+    const PairScene scene = SceneOf(StepWorld(1.7, kDepth, near_sign));
+    const PartialDensificationOptions options;
+    const PairResult result = DensifyPair(scene.Input(options), options, 2);
+    EXPECT_EQ(result.failure, "");
+    const double gsd = scene.Gsd(kDepth);
+    const Accuracy accuracy = MeasureAccuracy(scene, result.cloud, gsd);
+    EXPECT_GE(accuracy.half_gsd, 0.76);
+    EXPECT_GE(accuracy.one_gsd, 0.94);
+    EXPECT_GE(accuracy.two_gsd, 0.98);
+    EXPECT_GE(MeasureCoverage(scene, result.cloud, gsd), 0.955);
+    EXPECT_LT(FringeShare(scene, result.cloud), 0.085);
+  }
+}
+
+TEST(DensifyPairTest, ColorsAreThoseOfTheSurface) {
+  const PartialDensificationOptions options;
+  const PairResult result = DensifyPair(FlatScene().Input(options), options, 2);
+  double sum = 0;
+  for (const DensePoint& point : result.cloud.points) {
+    const std::array<double, 3> truth = FlatScene().world.ColorAt(point.xyz.cast<double>());
+    for (size_t c = 0; c < 3; ++c) sum += std::abs(point.rgb[c] - truth[c]);
+  }
+  const double mean = sum / 3 / static_cast<double>(result.cloud.points.size());
+  EXPECT_LT(mean, 4);
+}
+
+TEST(DensifyPairTest, SamplesEveryStepPixels) {
+  size_t num_points[5] = {};
+  for (const int step : {1, 2, 4}) {
+    PartialDensificationOptions options;
+    options.step = step;
+    const PairResult result = DensifyPair(FlatScene().Input(options), options, 2);
+    num_points[step] = result.cloud.points.size();
+    const Accuracy accuracy = MeasureAccuracy(FlatScene(), result.cloud, FlatScene().Gsd(kDepth));
+    EXPECT_GE(accuracy.one_gsd, 0.9) << step;
+    EXPECT_NEAR(static_cast<double>(num_points[1]) / static_cast<double>(num_points[step]),
+                step * step, 0.2 * step * step);
+  }
+}
+
+TEST(DensifyPairTest, SameBytesWithAnyNumberOfThreads) {
+  const PairScene scene = SceneOf(StepWorld(1.7, kDepth, 1));
+  const PartialDensificationOptions options;
+  const PairInput input = scene.Input(options);
+  const PairResult one = DensifyPair(input, options, 1);
+  for (const int num_threads : {2, 5}) {
+    const PairResult many = DensifyPair(input, options, num_threads);
+    ASSERT_EQ(many.cloud.points.size(), one.cloud.points.size());
+    for (size_t i = 0; i < one.cloud.points.size(); ++i) {
+      const DensePoint &a = one.cloud.points[i], &b = many.cloud.points[i];
+      ASSERT_TRUE(a.xyz == b.xyz && a.normal == b.normal && a.rgb == b.rgb) << i;
+    }
+    EXPECT_EQ(many.filled, one.filled);
+    EXPECT_EQ(many.num_failed_seeds, one.num_failed_seeds);
+    ASSERT_EQ(many.footprint.patches.size(), one.footprint.patches.size());
+  }
+}
+
+TEST(DensifyPairTest, FilledAndFootprintTellWhatIsThere) {
+  const PartialDensificationOptions options;
+  const PairInput input = FlatScene().Input(options);
+  const PairResult result = DensifyPair(input, options, 2);
+  ASSERT_EQ(result.filled.size(), input.cells.Size());
+  const double samples_per_cell = 16;
+  double num_expected = 0;
+  for (const float share : result.filled) {
+    EXPECT_TRUE(share >= 0 && share <= 1);
+    num_expected += share * samples_per_cell;
+  }
+  // Rectified pixels are not exactly as dense as those of a lens with distortion.
+  EXPECT_NEAR(num_expected / static_cast<double>(result.cloud.points.size()), 1, 0.15);
+  EXPECT_GT(result.footprint.patches.size(), 0.7 * static_cast<double>(input.cells.Size()));
+  const double gsd = FlatScene().Gsd(kDepth);
+  for (const SurfacePatch& patch : result.footprint.patches) {
+    EXPECT_NEAR(patch.center.z(), kDepth, 2 * gsd);
+    EXPECT_NEAR(patch.size, input.cells.cell * gsd, 0.35 * input.cells.cell * gsd);
+    EXPECT_LE((patch.center - result.footprint.center).norm(), result.footprint.radius);
+  }
+  EXPECT_EQ(result.num_seeds, 300);
+  EXPECT_LT(result.num_failed_seeds, 25);
+}
+
+// Cells of picture 1 that hold a point of the cloud; those within a hair of a cell's edge apart.
+std::vector<int> PointsOfCells(const PairScene& scene, const PairInput& input,
+                               const PartialCloud& cloud) {
+  std::vector<int> count(input.cells.Size(), 0);
+  for (const DensePoint& point : cloud.points) {
+    const auto pixel =
+        scene.view1.camera.ImgFromCam(scene.view1.cam_from_world * point.xyz.cast<double>());
+    const double x = std::fmod(pixel->x(), input.cells.cell);
+    const double y = std::fmod(pixel->y(), input.cells.cell);
+    const double edge = std::min(std::min(x, y), input.cells.cell - std::max(x, y));
+    if (edge > 0.05) ++count[input.cells.IndexOf(pixel->x(), pixel->y())];
+  }
+  return count;
+}
+
+double RangeAt(const PairScene& scene, const Eigen::Vector2d& pixel) {
+  return (*SurfaceAt(scene.world, scene.view1, pixel) - scene.view1.Center()).norm();
+}
+
+TEST(DensifyPairTest, ClosedCellsStayEmptyAndTheOthersDoNot) {
+  const PartialDensificationOptions options;
+  PairInput input = FlatScene().Input(options);
+  const std::vector<int> before =
+      PointsOfCells(FlatScene(), input, DensifyPair(input, options, 2).cloud);
+  input.closed.assign(input.cells.Size(), 0);
+  for (size_t cell = 0; cell < input.cells.Size(); ++cell) {
+    const Eigen::Vector2d center = input.cells.Center(cell);
+    input.closed[cell] = center.x() < 240 || (center.x() > 330 && center.y() < 100);
+  }
+  const PairResult result = DensifyPair(input, options, 2);
+  EXPECT_LT(result.num_seeds, 200);
+  const std::vector<int> after = PointsOfCells(FlatScene(), input, result.cloud);
+  int num_open_before = 0, num_open_after = 0;
+  for (size_t cell = 0; cell < input.cells.Size(); ++cell) {
+    if (input.closed[cell]) {
+      EXPECT_EQ(after[cell], 0);
+    } else {
+      num_open_before += before[cell];
+      num_open_after += after[cell];
+    }
+  }
+  EXPECT_GT(num_open_after, 0.97 * num_open_before);
+}
+
+TEST(DensifyPairTest, CoveredCellsAtTheirDepthStayEmpty) {
+  const PartialDensificationOptions options;
+  PairInput input = FlatScene().Input(options);
+  input.covered_range.assign(input.cells.Size(), 0);
+  for (size_t cell = 0; cell < input.cells.Size(); ++cell) {
+    const Eigen::Vector2d center = input.cells.Center(cell);
+    if (center.x() < 240) {
+      input.covered_range[cell] = static_cast<float>(RangeAt(FlatScene(), center));
+    }
+  }
+  const std::vector<int> count =
+      PointsOfCells(FlatScene(), input, DensifyPair(input, options, 2).cloud);
+  int num_open = 0;
+  for (size_t cell = 0; cell < input.cells.Size(); ++cell) {
+    if (input.covered_range[cell] > 0) {
+      EXPECT_EQ(count[cell], 0);
+    } else {
+      num_open += count[cell];
+    }
+  }
+  EXPECT_GT(num_open, 50000);
+}
+
+// A plane that was reconstructed before, and a table top above it that was not there, or was not
+// seen: at `table_x`. Returns the share of the table's pixels, seen twice, that have points.
+double TableCoverage(double table_x, const PartialDensificationOptions& options) {
+  const NoiseTexture texture(42, 0.16, 4);
+  const Rectangle ground = {{0, 0, kDepth}, {50, 0, 0}, {0, 50, 0}};
+  const Rectangle table = {{table_x, 0, 1.5}, {0.15, 0, 0}, {0, 0.15, 0}};
+  const PairScene scene = SceneOf(World({ground, table}, texture));
+  PairInput input = scene.Input(options, 600);
+  input.covered_range.assign(input.cells.Size(), 0);
+  for (size_t cell = 0; cell < input.cells.Size(); ++cell) {
+    const Eigen::Vector2d center = input.cells.Center(cell);
+    if (center.x() > 300) continue;
+    const auto on_ground = SurfaceAt(World({ground}, texture), scene.view1, center);
+    input.covered_range[cell] = static_cast<float>((*on_ground - scene.view1.Center()).norm());
+  }
+  const PairResult result = DensifyPair(input, options, 2);
+  int64_t num_on_table = 0;
+  for (const DensePoint& point : result.cloud.points) {
+    if (std::abs(point.xyz.z() - 1.5) > 3 * scene.Gsd(1.5)) continue;
+    num_on_table += std::abs(point.xyz.x() - table_x) < 0.15 && std::abs(point.xyz.y()) < 0.15;
+  }
+  return static_cast<double>(num_on_table) * std::pow(scene.Gsd(1.5) / 0.3, 2);
+}
+
+TEST(DensifyPairTest, NewObjectInFrontOfACoveredPlaceIsReconstructed) {
+  const PartialDensificationOptions options;
+  const double beside = TableCoverage(0.05, options), far = TableCoverage(-0.4, options);
+  EXPECT_GT(beside, 0.75);
+  EXPECT_GT(far, 0.75);
+}
+
+TEST(DensifyPairTest, WrongSeedsAreNotUsed) {
+  const PartialDensificationOptions options;
+  PairInput input = FlatScene().Input(options, 100);
+  for (PixelPair& seed : input.seeds) seed.pixel2.y() += 5;  // off the epipolar line
+  EXPECT_EQ(DensifyPair(input, options, 1).failure, "too few seeds in areas that are new");
+  input = FlatScene().Input(options, 100);
+  for (PixelPair& seed : input.seeds) seed.pixel2.x() += 25;  // on it, but wrong: no correlation
+  const PairResult wrong = DensifyPair(input, options, 1);
+  EXPECT_GT(wrong.num_seeds, 80);
+  EXPECT_GT(wrong.num_failed_seeds, 0.8 * wrong.num_seeds);
+  EXPECT_LT(wrong.cloud.points.size(), 8000u);  // of 160 000: chance correlations
+  input = FlatScene().Input(options, 100);
+  for (PixelPair& seed : input.seeds) std::swap(seed.pixel1, seed.pixel2);  // behind the cameras
+  EXPECT_NE(DensifyPair(input, options, 1).failure, "");
+}
+
+TEST(DensifyPairTest, NothingToDoIsAStatus) {
+  const PartialDensificationOptions options;
+  PairInput input = FlatScene().Input(options);
+  input.closed.assign(input.cells.Size(), 1);
+  EXPECT_EQ(DensifyPair(input, options, 1).failure, "too few seeds in areas that are new");
+  input = FlatScene().Input(options);
+  input.view2 = input.view1;
+  EXPECT_EQ(DensifyPair(input, options, 1).failure,
+            "the cameras look along their baseline or coincide");
+  input = FlatScene().Input(options);
+  input.seeds.clear();
+  EXPECT_NE(DensifyPair(input, options, 1).failure, "");
+}
+
+// Paper 2.6: growth ends at the limit.
+TEST(DensifyPairTest, ExpansionIsLimited) {
+  PartialDensificationOptions options;
+  PairInput input = FlatScene().Input(options, 6);
+  options.max_expansion = 20.0 / 480;
+  for (const DensePoint& point : DensifyPair(input, options, 2).cloud.points) {
+    const auto pixel = FlatScene().view1.camera.ImgFromCam(FlatScene().view1.cam_from_world *
+                                                           point.xyz.cast<double>());
+    double nearest = 1e9;
+    for (const PixelPair& seed : input.seeds) {
+      nearest = std::min(nearest, (seed.pixel1 - *pixel).lpNorm<1>());
+    }
+    EXPECT_LT(nearest, 30);  // rectification turns the picture: 20 steps along other axes
+  }
+}
+
+TEST(DensifyPairTest, StepAndCells) {
+  PartialDensificationOptions options;
+  EXPECT_EQ(SampleStep(MakeCamera(CameraModel::kPinhole, 900, 480, 360), options), 1);
+  EXPECT_EQ(SampleStep(MakeCamera(CameraModel::kPinhole, 900, 4000, 3000), options), 4);
+  options.step = 3;
+  const Camera camera = MakeCamera(CameraModel::kPinhole, 900, 100, 50);
+  EXPECT_EQ(SampleStep(camera, options), 3);
+  const CellGrid cells = CellsOf(camera, options);
+  EXPECT_EQ(cells.cell, 12);
+  EXPECT_EQ(cells.width, 9);
+  EXPECT_EQ(cells.height, 5);
+  EXPECT_EQ(cells.IndexOf(0, 0), 0u);
+  EXPECT_EQ(cells.IndexOf(99.9, 49.9), 44u);
+  EXPECT_EQ(cells.IndexOf(1000, -5), 8u);
+  EXPECT_EQ(cells.Center(10), Eigen::Vector2d(18, 18));
+}
+
+}  // namespace
+}  // namespace colmap_seapoint
