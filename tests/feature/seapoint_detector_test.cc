@@ -175,6 +175,31 @@ TEST(SeaPointDetectorTest, TiesAreInRasterOrder) {
   EXPECT_EQ(summary.status, ThresholdStatus::kTied);
 }
 
+TEST(SeaPointDetectorTest, OfEqualMaximaTheFirstInRasterOrderStays) {
+  for (const bool side_by_side : {true, false}) {
+    GrayImage picture(90, 90, 1, 50);
+    const int dx = side_by_side ? 8 : -3, dy = side_by_side ? 0 : 8;
+    for (int y = 40; y < 43; ++y) {
+      for (int x = 40; x < 43; ++x) picture.At(x, y) = picture.At(x + dx, y + dy) = 200;
+    }
+    SeaPointExtractionOptions options;
+    options.smoothing_sigma = 1;
+    options.window_size = 3;
+    options.min_num_features = 1;
+    options.max_num_features = 100;
+    DetectionSummary summary;
+    options.nms_radius = 4;
+    const auto both = DetectSeaPoints(picture, GrayImage(), options, 10, &summary);
+    options.nms_radius = 20;
+    const auto one = DetectSeaPoints(picture, GrayImage(), options, 10, &summary);
+    ASSERT_EQ(one.size(), 1u);
+    ASSERT_GE(both.size(), 2u);
+    ExpectSamePoints(one, OracleDetect(picture, GrayImage(), options, 10));
+    EXPECT_LT(one[0].x, 44);
+    EXPECT_LT(one[0].y, 44);
+  }
+}
+
 TEST(SeaPointDetectorTest, SubPixelFollowsASmoothSpot) {
   for (const double x0 : {40.5, 40.7, 41.0, 40.2}) {
     for (const double y0 : {40.5, 40.9, 40.35}) {
