@@ -40,8 +40,7 @@ struct RectWindow {
   int x0 = 0, y0 = 0, width = 0, height = 0;
 };
 
-// The smallest window that holds the picture's part of the rect plane; at most max_pixels (cut
-// around its middle when a very oblique pair would make it larger).
+// The smallest window that holds the picture's part of the rect plane, up to 72 degrees aside.
 RectWindow WindowOfPicture(const PairGeometry& geometry, bool second);
 
 // Where the pixels of a window come from: positions in the source picture, sampled every kCell

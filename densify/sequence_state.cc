@@ -224,9 +224,11 @@ void SequenceState::DensifyNewAreas(int first, int second) {
     report.num_na += label == SeaPointLabel::kNA;
     report.num_rea += label == SeaPointLabel::kREA;
   }
-  const bool partial = options_.mode == "partial";
+  // Paper 2.6: SeaPoints in the overlap area form no seeds. Against surface that is known (ours)
+  // the pair itself decides, since a new object may stand in front of it.
+  const bool by_label = options_.mode == "partial" && !overlap.closed.empty();
   std::vector<PixelPair> seeds =
-      SeedsFromMatches(first, second, partial ? overlap.labels : std::vector<SeaPointLabel>());
+      SeedsFromMatches(first, second, by_label ? overlap.labels : std::vector<SeaPointLabel>());
   AppendModelSeeds(first, second, &seeds);
   PairResult result;
   RunPair(first, second, overlap, std::move(seeds), &report, &result);

@@ -21,14 +21,22 @@ GrayImage Resize(const GrayImage& image, int width, int height) {
 }
 
 // The target interval's share of a level: proportional to the level's area (paper 4: fewer points
-// at coarser scales).
-SeaPointExtractionOptions LevelOptions(const SeaPointExtractionOptions& options, int level) {
+// at coarser scales). The finest level takes what rounding leaves over.
+int LevelShare(int count, int level, int num_levels) {
   double total = 0;
-  for (int l = 0; l < options.num_levels; ++l) total += std::pow(kLevelScale, -2 * l);
-  const double share = std::pow(kLevelScale, -2 * level) / total;
+  for (int l = 0; l < num_levels; ++l) total += std::pow(kLevelScale, -2 * l);
+  if (level > 0) return static_cast<int>(count * std::pow(kLevelScale, -2 * level) / total);
+  int finest = count;
+  for (int l = 1; l < num_levels; ++l) finest -= LevelShare(count, l, num_levels);
+  return finest;
+}
+
+SeaPointExtractionOptions LevelOptions(const SeaPointExtractionOptions& options, int level) {
   SeaPointExtractionOptions at_level = options;
-  at_level.min_num_features = std::max(1, static_cast<int>(options.min_num_features * share));
-  at_level.max_num_features = std::max(1, static_cast<int>(options.max_num_features * share));
+  at_level.min_num_features =
+      std::max(1, LevelShare(options.min_num_features, level, options.num_levels));
+  at_level.max_num_features =
+      std::max(1, LevelShare(options.max_num_features, level, options.num_levels));
   return at_level;
 }
 
