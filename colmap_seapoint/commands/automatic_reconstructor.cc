@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 constexpr size_t kMaxImagesForAllPairs = 50;
 // Raise it whenever the same options give other results than before.
 constexpr char kMatchingVersion[] = "1";
-constexpr char kMapperVersion[] = "3";
+constexpr char kMapperVersion[] = "5";
 constexpr char kDensificationVersion[] = "1";
 
 std::string HashText(const std::string& text) { return HashBytes(text.data(), text.size()); }
@@ -73,7 +73,7 @@ class Reconstruction {
  private:
   std::string PicturesFingerprint(const std::vector<ReadablePicture>& pictures) const;
   bool MatchesAllPairs() const;
-  bool AdjustsPrincipalPoint() const;
+  bool FindsLens() const;
   std::string SecondChanceFingerprint(const std::string& pictures_fingerprint,
                                       const std::vector<ReadablePicture>& pictures) const;
   std::string MapperFingerprint() const;
@@ -195,8 +195,8 @@ void Reconstruction::MatchFeatures() {
 }
 
 // Not where the user says what the lens is, or what of it is to be refined.
-bool Reconstruction::AdjustsPrincipalPoint() const {
-  if (!options_.adjust_principal_point || !options_.reader.camera_params.empty()) return false;
+bool Reconstruction::FindsLens() const {
+  if (!options_.reader.camera_params.empty()) return false;
   const auto refinement = options_.mapper.lower_bound("Mapper.ba_refine");
   return refinement == options_.mapper.end() || refinement->first.rfind("Mapper.ba_refine", 0) != 0;
 }
@@ -206,7 +206,8 @@ std::string Reconstruction::MapperFingerprint() const {
   const auto begun = state_.Read("database");
   return HashText(kMapperVersion + DatabaseFingerprint(database_path_) +
                   (begun ? begun->fingerprint : "") + colmap_.version +
-                  (AdjustsPrincipalPoint() ? "adjusted" : "") +
+                  (FindsLens() ? "lens" : "") +
+                  (options_.adjust_principal_point ? "adjusted" : "") +
                   OptionsFingerprint({first_round_.begin(), first_round_.end()}) +
                   OptionsFingerprint({later_rounds_.begin(), later_rounds_.end()}));
 }
@@ -227,8 +228,9 @@ void Reconstruction::MapSparsely() {
     state_.Forget("mapper");
     {
       StageTimer timer(&part, "mapper");
-      RunMapper(colmap_, {database_path_, image_path_, sparse, workspace_ / "report", first_round_,
-                          later_rounds_, AdjustsPrincipalPoint(), matched_pictures_});
+      RunMapper(colmap_,
+                {database_path_, image_path_, sparse, workspace_ / "report", first_round_,
+                 later_rounds_, FindsLens(), options_.adjust_principal_point, matched_pictures_});
     }
     state_.Finish("mapper", mapper_fingerprint_, part);
   }

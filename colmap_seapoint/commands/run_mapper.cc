@@ -9,7 +9,7 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/natural_order.h"
 #include "colmap_seapoint/base/progress.h"
-#include "colmap_seapoint/commands/adjust_principal_point.h"
+#include "colmap_seapoint/commands/adjust_lens.h"
 #include "colmap_seapoint/io/atomic_file.h"
 #include "colmap_seapoint/io/colmap_model.h"
 #include "colmap_seapoint/io/subprocess.h"
@@ -23,6 +23,8 @@ constexpr int kMaxRounds = 5;
 constexpr size_t kMinPicturesOfModel = 3;
 // Relaxed thresholds let pass models of a handful of chance points.
 constexpr size_t kMinPointsOfModel = 50;
+constexpr char kMinModelSize[] = "Mapper.min_model_size";
+constexpr char kRefineDistortion[] = "Mapper.ba_refine_extra_params";
 
 void RemoveAll(const fs::path& path) {
   std::error_code error;
@@ -52,6 +54,23 @@ std::optional<int> NumRegistered(const std::string& line) {
   return std::atoi(line.c_str() + digits);
 }
 
+// One run of the mapper, in a folder of its own.
+struct Trial {
+  fs::path folder;
+  MapperOptions options;
+  bool holds_distortion = false;
+  std::vector<fs::path> models;     // those of enough points
+  std::vector<std::string> lenses;  // what became of each model's lens
+  bool lenses_are_sound = true;
+  std::set<std::string> pictures;
+  double worst_error = 0;  // of a model, root mean square, pixels
+};
+
+bool IsBetter(const Trial& a, const Trial& b) {
+  if (a.pictures.size() != b.pictures.size()) return a.pictures.size() > b.pictures.size();
+  return a.worst_error < b.worst_error;
+}
+
 // What all rounds know of each other.
 class MapperRounds {
  public:
@@ -69,46 +88,51 @@ class MapperRounds {
       const bool found_model = RunRound(round);
       if (missing_.size() < kMinPicturesOfModel || (!found_model && round > 1)) break;
     }
+    if (num_models_ == 0) TakeSmallModels();
     if (num_models_ == 0) {
       throw Error(job_.database_path.string(), "the mapper found no model (" + end_ + ")",
                   "take pictures that overlap more, or relax --Mapper.abs_pose_min_num_inliers; "
                   "its output is in " +
-                      LogOf(1).string());
+                      LogOf("1").string());
     }
     RemoveAll(job_.output_path);
     Rename(folder_, job_.output_path);
   }
 
  private:
-  fs::path LogOf(int round) const {
-    return job_.log_folder / ("mapper_" + std::to_string(round) + ".log");
-  }
-
-  const MapperOptions& OptionsOf(int round) const {
-    return round == 1 ? job_.first_round : job_.later_rounds;
-  }
-
-  std::vector<std::string> Arguments(int round, const fs::path& output) const {
-    std::vector<std::string> arguments = {
-        "mapper",       "--database_path",        job_.database_path.string(),
-        "--image_path", job_.image_path.string(), "--output_path",
-        output.string()};
-    if (round > 1) {
-      const fs::path list = output / "pictures.txt";
-      std::string names;
-      for (const std::string& name : missing_) names += name + "\n";
-      WriteTextFile(list, names);
-      arguments.insert(arguments.end(), {"--image_list_path", list.string()});
-    }
-    for (const auto& [name, value] : OptionsOf(round)) {
-      arguments.insert(arguments.end(), {"--" + name, value});
-    }
-    return arguments;
+  fs::path LogOf(const std::string& trial) const {
+    return job_.log_folder / ("mapper_" + trial + ".log");
   }
 
   bool RunRound(int round) {
-    const fs::path output = folder_ / "round";
-    fs::create_directories(output);
+    const std::string name = std::to_string(round);
+    const bool is_first = round == 1;
+    const MapperOptions& options = is_first ? job_.first_round : job_.later_rounds;
+    Trial trial = RunTrial(name, options, job_.finds_lens, is_first);
+    const bool is_doubtful = trial.pictures.size() < missing_.size() || !trial.lenses_are_sound;
+    if (is_first && trial.holds_distortion && is_doubtful) {
+      const Trial free_trial = RunTrial(name + "_free_distortion", options, false, false);
+      if (IsBetter(free_trial, trial)) trial = free_trial;
+    }
+    return TakeModels("Mapper, round " + name, trial);
+  }
+
+  // COLMAP drops models of less than ten pictures, as chance brings some about. Better than none.
+  void TakeSmallModels() {
+    if (!colmap_.HasMapperOption(kMinModelSize)) return;
+    MapperOptions options = job_.later_rounds;
+    options[kMinModelSize] = std::to_string(kMinPicturesOfModel);
+    TakeModels("Mapper, small models", RunTrial("small_models", options, job_.finds_lens, false));
+  }
+
+  Trial RunTrial(const std::string& name, const MapperOptions& options, bool holds_distortion,
+                 bool must_succeed) {
+    Trial trial;
+    trial.folder = folder_ / ("trial_" + name);
+    trial.options = options;
+    trial.holds_distortion = holds_distortion && colmap_.HasMapperOption(kRefineDistortion);
+    if (trial.holds_distortion) trial.options[kRefineDistortion] = "0";
+    fs::create_directories(trial.folder);
     Progress progress("Pictures registered by colmap mapper",
                       static_cast<int64_t>(missing_.size()));
     std::string last_line;
@@ -116,53 +140,91 @@ class MapperRounds {
       if (!line.empty()) last_line = line;
       if (const auto count = NumRegistered(line)) progress.Update(*count);
     };
-    const auto result =
-        RunSubprocess(colmap_.path, Arguments(round, output), LogOf(round), read_line);
+    const auto result = RunSubprocess(colmap_.path, Arguments(trial), LogOf(name), read_line);
     end_ = result.Text() + ", '" + last_line + "'";
-    std::vector<fs::path> models = ListModels(output);
-    if (!CheckResult(result, last_line, !models.empty(), round)) models.clear();
-    const size_t num_before = missing_.size();
-    const int num_models_before = num_models_;
-    for (const fs::path& model : models) TakeModel(model, OptionsOf(round));
-    RemoveAll(output);
-    const int num_taken = num_models_ - num_models_before;
-    LogInfo("Mapper, round " + std::to_string(round) + ": " +
-            std::to_string(num_before - missing_.size()) + " of " + std::to_string(num_before) +
-            " pictures in " + std::to_string(num_taken) + " models");
-    return num_taken > 0;
+    const std::vector<fs::path> models = ListModels(trial.folder);
+    if (!CheckResult(result, last_line, !models.empty(), LogOf(name), must_succeed)) return trial;
+    for (const fs::path& model : models) AddModel(model, name, &trial);
+    return trial;
+  }
+
+  void AddModel(const fs::path& path, const std::string& trial_name, Trial* trial) const {
+    if (ReadSparseModel(path).points3D.size() < kMinPointsOfModel) return;
+    std::string lens;
+    if (job_.finds_lens) {
+      const std::string log = "lens_" + trial_name + "_" + path.filename().string();
+      const auto adjustment =
+          AdjustLens(colmap_,
+                     {job_.database_path, job_.image_path, trial->options, job_.log_folder / log,
+                      trial->holds_distortion, job_.adjusts_principal_point},
+                     path);
+      lens = adjustment.outcome;
+      trial->lenses_are_sound = trial->lenses_are_sound && adjustment.distortion_is_sound;
+    }
+    const SparseModel model = ReadSparseModel(path);
+    for (const PosedImage& image : model.images) trial->pictures.insert(image.name);
+    trial->worst_error = std::max(trial->worst_error, ReprojectionError(model));
+    trial->models.push_back(path);
+    trial->lenses.push_back(lens);
+  }
+
+  std::vector<std::string> Arguments(const Trial& trial) const {
+    std::vector<std::string> arguments = {"mapper",
+                                          "--database_path",
+                                          job_.database_path.string(),
+                                          "--image_path",
+                                          job_.image_path.string(),
+                                          "--output_path",
+                                          trial.folder.string()};
+    if (num_models_ > 0) {
+      const fs::path list = trial.folder / "pictures.txt";
+      std::string names;
+      for (const std::string& name : missing_) names += name + "\n";
+      WriteTextFile(list, names);
+      arguments.insert(arguments.end(), {"--image_list_path", list.string()});
+    }
+    for (const auto& [name, value] : trial.options) {
+      arguments.insert(arguments.end(), {"--" + name, value});
+    }
+    return arguments;
   }
 
   // Whether what the mapper left can be used. Having found no model is no failure here: COLMAP 3.8
   // exits with 1 for that.
   bool CheckResult(const SubprocessResult& result, const std::string& last_line, bool found_model,
-                   int round) const {
+                   const fs::path& log, bool must_succeed) const {
     if (last_line.find("parse options") != std::string::npos ||
         last_line.find("Invalid options") != std::string::npos) {
       throw UsageError("--Mapper: " + colmap_.path.string() + " refuses a value: " + last_line);
     }
     if (result.signal_number == 0 && (result.exit_code == 0 || !found_model)) return true;
     const std::string finding = "the mapper failed (" + end_ + ")";
-    if (round > 1) {
-      // The models of the rounds before stand.
-      LogWarning(finding + " in round " + std::to_string(round) + "; its output is in " +
-                 LogOf(round).string());
-      return false;
+    if (must_succeed) {
+      throw Error(colmap_.path.string(), finding,
+                  "read its output in " + log.string() + " and run the same command again");
     }
-    throw Error(colmap_.path.string(), finding,
-                "read its output in " + LogOf(round).string() + " and run the same command again");
+    // What was found before stands.
+    LogWarning(finding + "; its output is in " + log.string());
+    return false;
   }
 
-  void TakeModel(const fs::path& model, const MapperOptions& options) {
-    const SparseModel sparse = ReadSparseModel(model);
-    if (sparse.points3D.size() < kMinPointsOfModel) return;
-    for (const PosedImage& image : sparse.images) missing_.erase(image.name);
-    const std::string name = std::to_string(num_models_++);
-    if (job_.adjust_principal_point) {
-      const AdjustmentJob adjustment = {job_.database_path, job_.image_path, options,
-                                        job_.log_folder / ("adjustment_" + name + ".log")};
-      LogInfo("Lens of model " + name + ": " + AdjustPrincipalPoint(colmap_, adjustment, model));
+  // True when there were any.
+  bool TakeModels(const std::string& what, const Trial& trial) {
+    const size_t num_before = missing_.size();
+    for (size_t i = 0; i < trial.models.size(); ++i) {
+      const std::string name = std::to_string(num_models_++);
+      Rename(trial.models[i], folder_ / name);
+      if (!trial.lenses[i].empty()) LogInfo("Lens of model " + name + ": " + trial.lenses[i]);
     }
-    Rename(model, folder_ / name);
+    for (const std::string& name : trial.pictures) missing_.erase(name);
+    LogInfo(what + ": " + std::to_string(num_before - missing_.size()) + " of " +
+            std::to_string(num_before) + " pictures in " + std::to_string(trial.models.size()) +
+            " models");
+    // Of a first round with two trials, the other one's too.
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+      if (entry.path().filename().string().rfind("trial_", 0) == 0) RemoveAll(entry.path());
+    }
+    return !trial.models.empty();
   }
 
   const ColmapProgram& colmap_;
@@ -170,7 +232,7 @@ class MapperRounds {
   fs::path folder_;
   std::set<std::string> missing_;  // pictures in no model yet
   int num_models_ = 0;
-  std::string end_;  // how the last round ended
+  std::string end_;  // how the last trial ended
 };
 
 }  // namespace

@@ -16,15 +16,19 @@ struct MapperJob {
   std::filesystem::path log_folder;   // gets mapper_1.log, mapper_2.log ...
   MapperOptions first_round;
   MapperOptions later_rounds;
-  bool adjust_principal_point = true;
+  // The lens is ours to find: held while models grow, and adjusted afterwards (adjust_lens.h).
+  bool finds_lens = true;
+  bool adjusts_principal_point = true;
   std::vector<std::string> pictures;  // that have a verified pair
 };
 
 // Maps all pictures; then, in further rounds, those that are in no model yet, as long as that finds
-// one: the models of all rounds are numbered on. Models of too few points are not taken. Every
-// model's principal point is adjusted (see adjust_principal_point.h). Works in <output_path>.tmp
-// (removed first when an earlier run left it), which gets its name when all is done. Throws Error
-// when the mapper fails or no round finds a model, UsageError when it refuses an option's value.
+// one: the models of all rounds are numbered on. When the first round leaves pictures over, or
+// a lens that cannot be adjusted soundly, it is tried with a free distortion too, and the better
+// trial counts: more pictures, then the smaller error. Models of too few points are not
+// taken. Works in <output_path>.tmp (removed first when an earlier run left it), which gets its
+// name when all is done. Throws Error when the mapper fails or no round finds a model, UsageError
+// when it refuses an option's value.
 void RunMapper(const ColmapProgram& colmap, const MapperJob& job);
 
 // Model folders below `sparse`, by number.

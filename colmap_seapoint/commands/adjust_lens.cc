@@ -1,4 +1,4 @@
-#include "colmap_seapoint/commands/adjust_principal_point.h"
+#include "colmap_seapoint/commands/adjust_lens.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,35 +18,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMaxFocalChange = 0.2;  // share of the focal length
 constexpr size_t kMinPictures = 3;
-// A few observations come in anew.
-constexpr double kMaxErrorGrowth = 1.02;
+constexpr double kMaxErrorGrowth = 1.02;           // a few observations come in anew
 constexpr double kMaxPrincipalPointChange = 0.05;  // share of the longer side
 
-// Root mean square over all observations of triangulated points, pixels.
-double ReprojectionError(const SparseModel& model) {
-  double sum = 0;
-  int64_t count = 0;
-  for (const PosedImage& image : model.images) {
-    const Camera& camera = model.cameras.at(image.camera_id);
-    for (size_t i = 0; i < image.points2D.size(); ++i) {
-      if (image.point3D_ids[i] == kNoPoint3D) continue;
-      const Eigen::Vector3d& xyz = model.points3D.at(image.point3D_ids[i]).xyz;
-      const auto pixel = camera.ImgFromCam(image.cam_from_world * xyz);
-      if (!pixel) continue;
-      sum += (*pixel - image.points2D[i]).squaredNorm();
-      ++count;
-    }
-  }
-  return count == 0 ? 0 : std::sqrt(sum / static_cast<double>(count));
+struct Adjustment {
+  const char* name;
+  bool frees_principal_point;
+  double max_focal_ratio;  // or its inverse
+};
+constexpr Adjustment kDistortion = {"distortion", false, 2.0};
+constexpr Adjustment kPrincipalPoint = {"principal_point", true, 1.2};
+
+bool IsWithinRatio(double after, double before, double max_ratio) {
+  return after <= max_ratio * before && before <= max_ratio * after;  // false for NaN
 }
 
 // "" when the lens has changed by no more than a calibration may.
-std::string LensFault(const Camera& before, const Camera& after) {
-  const double focal_change = std::max(std::abs(after.FocalX() / before.FocalX() - 1),
-                                       std::abs(after.FocalY() / before.FocalY() - 1));
-  if (!(focal_change <= kMaxFocalChange)) return "the focal length moved too far";
+std::string LensFault(const Camera& before, const Camera& after, double max_focal_ratio) {
+  if (!IsWithinRatio(after.FocalX(), before.FocalX(), max_focal_ratio) ||
+      !IsWithinRatio(after.FocalY(), before.FocalY(), max_focal_ratio)) {
+    return "the focal length moved too far";
+  }
   const double point_change = std::hypot(after.PrincipalX() - before.PrincipalX(),
                                          after.PrincipalY() - before.PrincipalY());
   if (!(point_change <= kMaxPrincipalPointChange * std::max(before.width, before.height))) {
@@ -55,7 +48,7 @@ std::string LensFault(const Camera& before, const Camera& after) {
   return "";
 }
 
-std::string Fault(const SparseModel& before, const SparseModel& after) {
+std::string Fault(const SparseModel& before, const SparseModel& after, double max_focal_ratio) {
   if (after.images.size() != before.images.size() ||
       after.cameras.size() != before.cameras.size()) {
     return "pictures were lost";
@@ -63,7 +56,7 @@ std::string Fault(const SparseModel& before, const SparseModel& after) {
   for (const auto& [id, camera] : before.cameras) {
     const auto found = after.cameras.find(id);
     if (found == after.cameras.end()) return "a camera was lost";
-    const std::string fault = LensFault(camera, found->second);
+    const std::string fault = LensFault(camera, found->second, max_focal_ratio);
     if (!fault.empty()) return fault;
   }
   if (ReprojectionError(after) > kMaxErrorGrowth * ReprojectionError(before)) {
@@ -117,15 +110,18 @@ SparseModel WithoutPicture(SparseModel model, uint32_t image_id) {
   return model;
 }
 
-std::vector<std::string> Arguments(const AdjustmentJob& job, const SparseModel& model,
-                                   const fs::path& input, const fs::path& output) {
+std::vector<std::string> Arguments(const AdjustmentJob& job, const Adjustment& adjustment,
+                                   const SparseModel& model, const fs::path& input,
+                                   const fs::path& output) {
   // Else the mapper would go on to pictures that are not the model's.
   std::string names;
   for (const PosedImage& image : model.images) names += image.name + "\n";
   const fs::path list = input / "pictures.txt";
   WriteTextFile(list, names);
   MapperOptions options = job.options;
-  options["Mapper.ba_refine_principal_point"] = "1";
+  options["Mapper.ba_refine_extra_params"] = "1";
+  options["Mapper.ba_refine_principal_point"] = adjustment.frees_principal_point ? "1" : "0";
+  options["Mapper.ba_global_max_num_iterations"] = "300";  // 50 in COLMAP: it stops on the way
   std::vector<std::string> arguments = {
       "mapper",        "--database_path",       job.database_path.string(),
       "--image_path",  job.image_path.string(), "--image_list_path",
@@ -137,12 +133,11 @@ std::vector<std::string> Arguments(const AdjustmentJob& job, const SparseModel& 
   return arguments;
 }
 
-}  // namespace
-
-std::string AdjustPrincipalPoint(const ColmapProgram& colmap, const AdjustmentJob& job,
-                                 const fs::path& model) {
+// "" when the adjusted model has taken the model's place; else why not.
+std::string Adjust(const ColmapProgram& colmap, const AdjustmentJob& job,
+                   const Adjustment& adjustment, const fs::path& model) {
   const SparseModel before = ReadSparseModel(model);
-  if (before.images.size() < kMinPictures) return "left as the mapper found it: too few pictures";
+  if (before.images.size() < kMinPictures) return "too few pictures";
   const fs::path reduced = model.string() + ".reduced", adjusted = model.string() + ".adjusted";
   std::error_code error;
   for (const fs::path& folder : {reduced, adjusted}) {
@@ -150,23 +145,55 @@ std::string AdjustPrincipalPoint(const ColmapProgram& colmap, const AdjustmentJo
     fs::create_directories(folder);
   }
   WriteSparseModelBinary(reduced, WithoutPicture(before, MostSeeing(before)));
-  const auto result = RunSubprocess(colmap.path, Arguments(job, before, reduced, adjusted),
-                                    job.log_path, [](const std::string&) {});
-  std::string outcome;
+  const auto result = RunSubprocess(
+      colmap.path, Arguments(job, adjustment, before, reduced, adjusted),
+      job.log_path.string() + "_" + adjustment.name + ".log", [](const std::string&) {});
+  std::string fault;
   if (!result.Succeeded() || !IsSparseModel(adjusted)) {
-    outcome = "left as the mapper found it: the adjustment failed (" + result.Text() + ")";
+    fault = "the mapper failed (" + result.Text() + ")";
   } else {
     const SparseModel after = ReadSparseModel(adjusted);
-    const std::string fault = Fault(before, after);
-    if (fault.empty()) {
-      WriteSparseModelBinary(model, after);
-      outcome = Outcome(before, after);
-    } else {
-      outcome = "left as the mapper found it: " + fault;
-    }
+    fault = Fault(before, after, adjustment.max_focal_ratio);
+    if (fault.empty()) WriteSparseModelBinary(model, after);
   }
   for (const fs::path& folder : {reduced, adjusted}) fs::remove_all(folder, error);
-  return outcome;
+  return fault;
+}
+
+}  // namespace
+
+double ReprojectionError(const SparseModel& model) {
+  double sum = 0;
+  int64_t count = 0;
+  for (const PosedImage& image : model.images) {
+    const Camera& camera = model.cameras.at(image.camera_id);
+    for (size_t i = 0; i < image.points2D.size(); ++i) {
+      if (image.point3D_ids[i] == kNoPoint3D) continue;
+      const Eigen::Vector3d& xyz = model.points3D.at(image.point3D_ids[i]).xyz;
+      const auto pixel = camera.ImgFromCam(image.cam_from_world * xyz);
+      if (!pixel) continue;
+      sum += (*pixel - image.points2D[i]).squaredNorm();
+      ++count;
+    }
+  }
+  return count == 0 ? 0 : std::sqrt(sum / static_cast<double>(count));
+}
+
+LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
+                          const fs::path& model) {
+  const SparseModel before = ReadSparseModel(model);
+  LensAdjustment result;
+  std::string refused;
+  const auto adjust = [&](const Adjustment& adjustment) {
+    const std::string fault = Adjust(colmap, job, adjustment, model);
+    if (!fault.empty()) refused += std::string("; ") + adjustment.name + " refused: " + fault;
+    return fault.empty();
+  };
+  if (job.frees_distortion) result.distortion_is_sound = adjust(kDistortion);
+  // It frees the distortion too.
+  if (job.frees_principal_point && result.distortion_is_sound) adjust(kPrincipalPoint);
+  result.outcome = Outcome(before, ReadSparseModel(model)) + refused;
+  return result;
 }
 
 }  // namespace colmap_seapoint

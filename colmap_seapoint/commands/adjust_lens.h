@@ -1,0 +1,42 @@
+// The lens of a model that the mapper returned is adjusted once more (ours). While a model grows
+// from two pictures of flat ground, a free distortion drifts off and takes the model with it; so
+// the mapper holds it, and it is freed here, where all pictures have their say. Then the principal
+// point, which COLMAP's mapper leaves at the picture's centre: a lens that is some pixels off bends
+// the focal length by per cents on flat ground, which no dense matching can mend.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "colmap_seapoint/base/sparse_model.h"
+#include "colmap_seapoint/commands/colmap_program.h"
+
+namespace colmap_seapoint {
+
+struct AdjustmentJob {
+  std::filesystem::path database_path;
+  std::filesystem::path image_path;
+  MapperOptions options;           // as the mapper had them
+  std::filesystem::path log_path;  // without ".log"
+  bool frees_distortion = true;
+  bool frees_principal_point = true;
+};
+
+// Each adjustment takes one picture out of `model` and has `colmap mapper` register it again, which
+// ends with a global adjustment; the result takes the model's place when it is sound: the same
+// pictures, no larger reprojection error, focal lengths within a factor of two (the second
+// adjustment: a fifth) and principal points within a twentieth of the picture's longer side of what
+// they were. Not `colmap bundle_adjuster`: with many points it uses all cores, cannot be told not
+// to, and then gives another result each time.
+// The model is as it was when the mapper fails, or returns something unsound.
+struct LensAdjustment {
+  bool distortion_is_sound = true;  // it was freed and the result taken, or it was free before
+  std::string outcome;              // one line for the user
+};
+LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
+                          const std::filesystem::path& model);
+
+// Root mean square over all observations of triangulated points, pixels.
+double ReprojectionError(const SparseModel& model);
+
+}  // namespace colmap_seapoint
