@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <set>
+#include <map>
 #include <system_error>
-#include <vector>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/sparse_model.h"
-#include "colmap_seapoint/io/atomic_file.h"
 #include "colmap_seapoint/io/colmap_model.h"
 #include "colmap_seapoint/io/subprocess.h"
 
@@ -19,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kMinPictures = 3;
-constexpr double kMaxErrorGrowth = 1.02;           // a few observations come in anew
+constexpr double kMaxErrorGrowth = 1.001;          // the adjuster's cost is robust, ours is not
 constexpr double kMaxPrincipalPointChange = 0.05;  // share of the longer side
 
 struct Adjustment {
@@ -76,61 +74,21 @@ std::string Outcome(const SparseModel& before, const SparseModel& after) {
   return text;
 }
 
-size_t NumPointsSeen(const PosedImage& image) {
-  return image.point3D_ids.size() -
-         static_cast<size_t>(
-             std::count(image.point3D_ids.begin(), image.point3D_ids.end(), kNoPoint3D));
-}
-
-// The picture that the mapper will find again most surely.
-uint32_t MostSeeing(const SparseModel& model) {
-  const auto most = std::max_element(
-      model.images.begin(), model.images.end(),
-      [](const auto& a, const auto& b) { return NumPointsSeen(a) < NumPointsSeen(b); });
-  return most->image_id;
-}
-
-SparseModel WithoutPicture(SparseModel model, uint32_t image_id) {
-  std::set<uint64_t> lost;  // points that one picture alone would see
-  for (auto& [id, point] : model.points3D) {
-    auto& track = point.track;
-    const auto is_gone = [&](const auto& element) { return element.image_id == image_id; };
-    track.erase(std::remove_if(track.begin(), track.end(), is_gone), track.end());
-    if (track.size() < 2) lost.insert(id);
-  }
-  for (uint64_t id : lost) model.points3D.erase(id);
-  const auto is_gone = [&](const PosedImage& image) { return image.image_id == image_id; };
-  model.images.erase(std::remove_if(model.images.begin(), model.images.end(), is_gone),
-                     model.images.end());
-  for (PosedImage& image : model.images) {
-    for (uint64_t& id : image.point3D_ids) {
-      if (lost.count(id) > 0) id = kNoPoint3D;
+// The bundle adjuster leaves the points' errors as they were before it.
+void UpdatePointErrors(SparseModel* model) {
+  std::map<uint64_t, double> sums;
+  for (const PosedImage& image : model->images) {
+    const Camera& camera = model->cameras.at(image.camera_id);
+    for (size_t i = 0; i < image.points2D.size(); ++i) {
+      const uint64_t id = image.point3D_ids[i];
+      if (id == kNoPoint3D) continue;
+      const auto pixel = camera.ImgFromCam(image.cam_from_world * model->points3D.at(id).xyz);
+      if (pixel) sums[id] += (*pixel - image.points2D[i]).norm();
     }
   }
-  return model;
-}
-
-std::vector<std::string> Arguments(const AdjustmentJob& job, const Adjustment& adjustment,
-                                   const SparseModel& model, const fs::path& input,
-                                   const fs::path& output) {
-  // Else the mapper would go on to pictures that are not the model's.
-  std::string names;
-  for (const PosedImage& image : model.images) names += image.name + "\n";
-  const fs::path list = input / "pictures.txt";
-  WriteTextFile(list, names);
-  MapperOptions options = job.options;
-  options["Mapper.ba_refine_extra_params"] = "1";
-  options["Mapper.ba_refine_principal_point"] = adjustment.frees_principal_point ? "1" : "0";
-  options["Mapper.ba_global_max_num_iterations"] = "300";  // 50 in COLMAP: it stops on the way
-  std::vector<std::string> arguments = {
-      "mapper",        "--database_path",       job.database_path.string(),
-      "--image_path",  job.image_path.string(), "--image_list_path",
-      list.string(),   "--input_path",          input.string(),
-      "--output_path", output.string()};
-  for (const auto& [name, value] : options) {
-    arguments.insert(arguments.end(), {"--" + name, value});
+  for (auto& [id, point] : model->points3D) {
+    if (!point.track.empty()) point.error = sums[id] / static_cast<double>(point.track.size());
   }
-  return arguments;
 }
 
 // "" when the adjusted model has taken the model's place; else why not.
@@ -138,25 +96,27 @@ std::string Adjust(const ColmapProgram& colmap, const AdjustmentJob& job,
                    const Adjustment& adjustment, const fs::path& model) {
   const SparseModel before = ReadSparseModel(model);
   if (before.images.size() < kMinPictures) return "too few pictures";
-  const fs::path reduced = model.string() + ".reduced", adjusted = model.string() + ".adjusted";
+  const fs::path adjusted = model.string() + ".adjusted";
   std::error_code error;
-  for (const fs::path& folder : {reduced, adjusted}) {
-    fs::remove_all(folder, error);
-    fs::create_directories(folder);
-  }
-  WriteSparseModelBinary(reduced, WithoutPicture(before, MostSeeing(before)));
+  fs::remove_all(adjusted, error);
+  fs::create_directories(adjusted);
   const auto result = RunSubprocess(
-      colmap.path, Arguments(job, adjustment, before, reduced, adjusted),
-      job.log_path.string() + "_" + adjustment.name + ".log", [](const std::string&) {});
+      colmap.path,
+      {"bundle_adjuster", "--input_path", model.string(), "--output_path", adjusted.string(),
+       "--BundleAdjustment.refine_principal_point", adjustment.frees_principal_point ? "1" : "0",
+       "--BundleAdjustment.max_num_iterations", "300"},
+      job.log_path.string() + "_" + adjustment.name + ".log", [](const std::string&) {},
+      Cores::kOne);
   std::string fault;
   if (!result.Succeeded() || !IsSparseModel(adjusted)) {
-    fault = "the mapper failed (" + result.Text() + ")";
+    fault = "the bundle adjuster failed (" + result.Text() + ")";
   } else {
-    const SparseModel after = ReadSparseModel(adjusted);
+    SparseModel after = ReadSparseModel(adjusted);
+    UpdatePointErrors(&after);
     fault = Fault(before, after, adjustment.max_focal_ratio);
     if (fault.empty()) WriteSparseModelBinary(model, after);
   }
-  for (const fs::path& folder : {reduced, adjusted}) fs::remove_all(folder, error);
+  fs::remove_all(adjusted, error);
   return fault;
 }
 

@@ -14,21 +14,17 @@
 namespace colmap_seapoint {
 
 struct AdjustmentJob {
-  std::filesystem::path database_path;
-  std::filesystem::path image_path;
-  MapperOptions options;           // as the mapper had them
   std::filesystem::path log_path;  // without ".log"
   bool frees_distortion = true;
   bool frees_principal_point = true;
 };
 
-// Each adjustment takes one picture out of `model` and has `colmap mapper` register it again, which
-// ends with a global adjustment; the result takes the model's place when it is sound: the same
-// pictures, no larger reprojection error, focal lengths within a factor of two (the second
-// adjustment: a fifth) and principal points within a twentieth of the picture's longer side of what
-// they were. Not `colmap bundle_adjuster`: with many points it uses all cores, cannot be told not
-// to, and then gives another result each time.
-// The model is as it was when the mapper fails, or returns something unsound.
+// Runs `colmap bundle_adjuster` on `model`, with the distortion free, then with the principal point
+// free as well. The result takes the model's place when it is sound: the same pictures, no larger
+// reprojection error, focal lengths within a factor of two (the second adjustment: a fifth) and
+// principal points within a twentieth of the picture's longer side of what they were. On one core:
+// with more of them its sums, and so its results, differ from run to run.
+// The model is as it was when the adjuster fails, or returns something unsound.
 struct LensAdjustment {
   bool distortion_is_sound = true;  // it was freed and the result taken, or it was free before
   std::string outcome;              // one line for the user

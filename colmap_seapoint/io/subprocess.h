@@ -20,6 +20,10 @@ struct SubprocessResult {
   std::string Text() const;  // "exit code 1", "killed by signal 11 (Segmentation fault)"
 };
 
+// kOne: on one core, for a program whose result depends on how many threads share the work and that
+// takes as many as there are cores.
+enum class Cores { kAll, kOne };
+
 // Runs `program` with `arguments` until it ends; stdin is empty, the environment is ours with
 // QT_QPA_PLATFORM=offscreen. stdout and stderr together go to `log_path` (truncated first; empty =
 // nowhere) and line by line, without the newline, to `on_line`.
@@ -31,6 +35,7 @@ struct SubprocessResult {
 SubprocessResult RunSubprocess(const std::filesystem::path& program,
                                const std::vector<std::string>& arguments,
                                const std::filesystem::path& log_path,
-                               const std::function<void(const std::string&)>& on_line);
+                               const std::function<void(const std::string&)>& on_line,
+                               Cores cores = Cores::kAll);
 
 }  // namespace colmap_seapoint
