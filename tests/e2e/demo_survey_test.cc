@@ -1,0 +1,66 @@
+// From pictures to a scored cloud, as scripts/demo.sh does it, with one thread and with two.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/cli/cli_runner.h"
+
+namespace colmap_seapoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+CliOptions WithinMinutes(double minutes) {
+  CliOptions options;
+  options.timeout_seconds = 60 * minutes;
+  return options;
+}
+
+CliResult Reconstruct(const fs::path& pictures, const fs::path& workspace, int num_threads) {
+  return RunProgram(
+      SEAPOINT_PROGRAM,
+      {"automatic_reconstructor", "--image_path", pictures.string(), "--workspace_path",
+       workspace.string(), "--num_threads", std::to_string(num_threads)},
+      WithinMinutes(3));
+}
+
+TEST(DemoSurvey, ReconstructedThroughTheRealMapper) {
+  const TemporaryFolder folder;
+  const fs::path survey = folder / "survey";
+  ASSERT_EQ(
+      RunProgram(DEMO_SURVEY, {"generate", "--output_path", survey.string()}, WithinMinutes(3))
+          .exit_code,
+      0);
+  const fs::path workspace = folder / "one_thread";
+  const CliResult run = Reconstruct(survey / "images", workspace, 1);
+  ASSERT_EQ(run.exit_code, 0) << run.Text();
+
+  const fs::path score_path = folder / "score.json";
+  const CliResult scored =
+      RunProgram(DEMO_SURVEY,
+                 {"score", "--survey_path", survey.string(), "--input_path",
+                  (workspace / "sparse/0").string(), "--cloud_path",
+                  (workspace / "dense/0/fused.ply").string(), "--output_path", score_path.string()},
+                 WithinMinutes(2));
+  ASSERT_EQ(scored.exit_code, 0) << scored.Text();
+  const auto score = nlohmann::json::parse(std::ifstream(score_path));
+  EXPECT_EQ(score["num_registered"], score["num_images"]);
+  EXPECT_GE(score["share_within_4gsd"], 0.95);
+  EXPECT_GE(score["coverage_4gsd"], 0.90);
+  EXPECT_LE(score["centre_rms_mm"], 2.0);
+  EXPECT_LE(score["redundancy"], 1.5);
+
+  const fs::path other = folder / "two_threads";
+  ASSERT_EQ(Reconstruct(survey / "images", other, 2).exit_code, 0);
+  for (const char* name : {"sparse/0/cameras.bin", "sparse/0/images.bin", "sparse/0/points3D.bin",
+                           "dense/0/fused.ply", "dense/0/fused.ply.vis"}) {
+    EXPECT_TRUE(ReadBytes(workspace / name) == ReadBytes(other / name)) << name;
+  }
+}
+
+}  // namespace
+}  // namespace colmap_seapoint
