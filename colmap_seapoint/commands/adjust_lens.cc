@@ -8,6 +8,7 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/sparse_model.h"
+#include "colmap_seapoint/commands/adjust_by_mapper.h"
 #include "colmap_seapoint/io/colmap_model.h"
 #include "colmap_seapoint/io/subprocess.h"
 
@@ -17,7 +18,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kMinPictures = 3;
-constexpr double kMaxErrorGrowth = 1.001;          // the adjuster's cost is robust, ours is not
+constexpr double kMaxErrorGrowth = 1.001;         // the adjuster's cost is robust, ours is not
+constexpr double kMaxErrorGrowthOfMapper = 1.02;  // which takes observations in and out
+// With two residuals each, below COLMAP's 50,000 (BundleAdjustmentOptions).
+constexpr size_t kMaxObservationsOfAdjuster = 24000;
+constexpr char kMaxIterations[] = "300";           // 50 or 100 in COLMAP: it stops on the way
 constexpr double kMaxPrincipalPointChange = 0.05;  // share of the longer side
 
 struct Adjustment {
@@ -46,7 +51,8 @@ std::string LensFault(const Camera& before, const Camera& after, double max_foca
   return "";
 }
 
-std::string Fault(const SparseModel& before, const SparseModel& after, double max_focal_ratio) {
+std::string Fault(const SparseModel& before, const SparseModel& after, double max_focal_ratio,
+                  double max_error_growth) {
   if (after.images.size() != before.images.size() ||
       after.cameras.size() != before.cameras.size()) {
     return "pictures were lost";
@@ -57,7 +63,7 @@ std::string Fault(const SparseModel& before, const SparseModel& after, double ma
     const std::string fault = LensFault(camera, found->second, max_focal_ratio);
     if (!fault.empty()) return fault;
   }
-  if (ReprojectionError(after) > kMaxErrorGrowth * ReprojectionError(before)) {
+  if (ReprojectionError(after) > max_error_growth * ReprojectionError(before)) {
     return "the error grew";
   }
   return "";
@@ -91,29 +97,54 @@ void UpdatePointErrors(SparseModel* model) {
   }
 }
 
+size_t NumObservations(const SparseModel& model) {
+  size_t count = 0;
+  for (const auto& [id, point] : model.points3D) count += point.track.size();
+  return count;
+}
+
+SubprocessResult RunBundleAdjuster(const ColmapProgram& colmap, const Adjustment& adjustment,
+                                   const fs::path& model, const fs::path& output,
+                                   const fs::path& log) {
+  return RunSubprocess(
+      colmap.path,
+      {"bundle_adjuster", "--input_path", model.string(), "--output_path", output.string(),
+       "--BundleAdjustment.refine_principal_point", adjustment.frees_principal_point ? "1" : "0",
+       "--BundleAdjustment.max_num_iterations", kMaxIterations},
+      log, {});
+}
+
+SubprocessResult RunMapperAgain(const ColmapProgram& colmap, const AdjustmentJob& job,
+                                const Adjustment& adjustment, const SparseModel& model,
+                                const fs::path& output, const fs::path& log) {
+  MapperOptions options = job.options;
+  options["Mapper.ba_refine_extra_params"] = "1";
+  options["Mapper.ba_refine_principal_point"] = adjustment.frees_principal_point ? "1" : "0";
+  options["Mapper.ba_global_max_num_iterations"] = kMaxIterations;
+  return AdjustByMapper(colmap, model, {job.database_path, job.image_path, options, output, log});
+}
+
 // "" when the adjusted model has taken the model's place; else why not.
 std::string Adjust(const ColmapProgram& colmap, const AdjustmentJob& job,
                    const Adjustment& adjustment, const fs::path& model) {
   const SparseModel before = ReadSparseModel(model);
   if (before.images.size() < kMinPictures) return "too few pictures";
+  const bool by_mapper = NumObservations(before) > kMaxObservationsOfAdjuster;
   const fs::path adjusted = model.string() + ".adjusted";
+  const fs::path log = job.log_path.string() + "_" + adjustment.name + ".log";
   std::error_code error;
   fs::remove_all(adjusted, error);
   fs::create_directories(adjusted);
-  const auto result = RunSubprocess(
-      colmap.path,
-      {"bundle_adjuster", "--input_path", model.string(), "--output_path", adjusted.string(),
-       "--BundleAdjustment.refine_principal_point", adjustment.frees_principal_point ? "1" : "0",
-       "--BundleAdjustment.max_num_iterations", "300"},
-      job.log_path.string() + "_" + adjustment.name + ".log", [](const std::string&) {},
-      Cores::kOne);
+  const auto result = by_mapper ? RunMapperAgain(colmap, job, adjustment, before, adjusted, log)
+                                : RunBundleAdjuster(colmap, adjustment, model, adjusted, log);
   std::string fault;
   if (!result.Succeeded() || !IsSparseModel(adjusted)) {
-    fault = "the bundle adjuster failed (" + result.Text() + ")";
+    fault = "the adjustment failed (" + result.Text() + ")";
   } else {
     SparseModel after = ReadSparseModel(adjusted);
     UpdatePointErrors(&after);
-    fault = Fault(before, after, adjustment.max_focal_ratio);
+    fault = Fault(before, after, adjustment.max_focal_ratio,
+                  by_mapper ? kMaxErrorGrowthOfMapper : kMaxErrorGrowth);
     if (fault.empty()) WriteSparseModelBinary(model, after);
   }
   fs::remove_all(adjusted, error);

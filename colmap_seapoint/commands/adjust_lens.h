@@ -14,16 +14,22 @@
 namespace colmap_seapoint {
 
 struct AdjustmentJob {
+  std::filesystem::path database_path;
+  std::filesystem::path image_path;
+  MapperOptions options;           // as the mapper had them
   std::filesystem::path log_path;  // without ".log"
   bool frees_distortion = true;
   bool frees_principal_point = true;
 };
 
-// Runs `colmap bundle_adjuster` on `model`, with the distortion free, then with the principal point
-// free as well. The result takes the model's place when it is sound: the same pictures, no larger
+// Adjusts `model` with COLMAP, with the distortion free, then with the principal point free as
+// well. The result takes the model's place when it is sound: the same pictures, no larger
 // reprojection error, focal lengths within a factor of two (the second adjustment: a fifth) and
-// principal points within a twentieth of the picture's longer side of what they were. On one core:
-// with more of them its sums, and so its results, differ from run to run.
+// principal points within a twentieth of the picture's longer side of what they were.
+// `colmap bundle_adjuster` gives the same result each time as long as it works with one thread,
+// which it chooses itself for up to 50,000 residuals; above that it takes as many as the machine
+// has cores and cannot be told otherwise (to bind it to one core does not help: three runs, three
+// results). Larger models go through the mapper, which can be told.
 // The model is as it was when the adjuster fails, or returns something unsound.
 struct LensAdjustment {
   bool distortion_is_sound = true;  // it was freed and the result taken, or it was free before

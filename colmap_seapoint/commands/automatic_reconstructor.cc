@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 constexpr size_t kMaxImagesForAllPairs = 50;
 // Raise it whenever the same options give other results than before.
 constexpr char kMatchingVersion[] = "1";
-constexpr char kMapperVersion[] = "6";
+constexpr char kMapperVersion[] = "7";
 constexpr char kDensificationVersion[] = "1";
 
 std::string HashText(const std::string& text) { return HashBytes(text.data(), text.size()); }

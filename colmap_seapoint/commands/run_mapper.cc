@@ -153,9 +153,10 @@ class MapperRounds {
     std::string lens;
     if (job_.finds_lens) {
       const std::string log = "lens_" + trial_name + "_" + path.filename().string();
-      const auto adjustment = AdjustLens(
-          colmap_, {job_.log_folder / log, trial->holds_distortion, job_.adjusts_principal_point},
-          path);
+      const AdjustmentJob job = {job_.database_path,      job_.image_path,
+                                 trial->options,          job_.log_folder / log,
+                                 trial->holds_distortion, job_.adjusts_principal_point};
+      const LensAdjustment adjustment = AdjustLens(colmap_, job, path);
       lens = adjustment.outcome;
       trial->lenses_are_sound = trial->lenses_are_sound && adjustment.distortion_is_sound;
     }

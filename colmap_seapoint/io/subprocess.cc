@@ -1,7 +1,6 @@
 #include "colmap_seapoint/io/subprocess.h"
 
 #include <fcntl.h>
-#include <sched.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -54,24 +53,10 @@ struct LaunchPlan {
   int output = -1;      // write end of the pipe
   int null_input = -1;  // /dev/null
   sigset_t all_signals;
-  cpu_set_t cores;
 };
 
-// The first of the cores that we may use ourselves; or all of those.
-cpu_set_t CoreSet(Cores cores) {
-  cpu_set_t ours, chosen;
-  CPU_ZERO(&ours);
-  sched_getaffinity(0, sizeof(ours), &ours);
-  if (cores == Cores::kAll) return ours;
-  CPU_ZERO(&chosen);
-  int first = 0;
-  while (first + 1 < CPU_SETSIZE && !CPU_ISSET(first, &ours)) ++first;
-  CPU_SET(first, &chosen);
-  return chosen;
-}
-
-LaunchPlan MakePlan(const std::filesystem::path& program, const std::vector<std::string>& arguments,
-                    Cores cores) {
+LaunchPlan MakePlan(const std::filesystem::path& program,
+                    const std::vector<std::string>& arguments) {
   static constexpr char kPlatform[] = "QT_QPA_PLATFORM=";
   LaunchPlan plan;
   plan.argument_texts.push_back(program.string());
@@ -88,7 +73,6 @@ LaunchPlan MakePlan(const std::filesystem::path& program, const std::vector<std:
   plan.environment.push_back(nullptr);
   plan.parent = getpid();
   sigfillset(&plan.all_signals);
-  plan.cores = CoreSet(cores);
   return plan;
 }
 
@@ -100,7 +84,6 @@ extern "C" void KillOwnGroup(int /*signal_number*/) { kill(0, SIGKILL); }
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
   for (int number : {SIGTERM, SIGINT, SIGHUP, SIGPIPE}) signal(number, SIG_DFL);
-  sched_setaffinity(0, sizeof(plan.cores), &plan.cores);
   dup2(plan.null_input, STDIN_FILENO);
   dup2(plan.output, STDOUT_FILENO);
   dup2(plan.output, STDERR_FILENO);
@@ -221,9 +204,8 @@ std::string SubprocessResult::Text() const {
 SubprocessResult RunSubprocess(const std::filesystem::path& program,
                                const std::vector<std::string>& arguments,
                                const std::filesystem::path& log_path,
-                               const std::function<void(const std::string&)>& on_line,
-                               Cores cores) {
-  LaunchPlan plan = MakePlan(program, arguments, cores);
+                               const std::function<void(const std::string&)>& on_line) {
+  LaunchPlan plan = MakePlan(program, arguments);
   const FileDescriptor log(
       log_path.empty() ? -1
                        : open(log_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));

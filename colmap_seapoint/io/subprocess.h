@@ -20,10 +20,6 @@ struct SubprocessResult {
   std::string Text() const;  // "exit code 1", "killed by signal 11 (Segmentation fault)"
 };
 
-// kOne: on one core, for a program whose result depends on how many threads share the work and that
-// takes as many as there are cores.
-enum class Cores { kAll, kOne };
-
 // Runs `program` with `arguments` until it ends; stdin is empty, the environment is ours with
 // QT_QPA_PLATFORM=offscreen. stdout and stderr together go to `log_path` (truncated first; empty =
 // nowhere) and line by line, without the newline, to `on_line`.
@@ -35,7 +31,6 @@ enum class Cores { kAll, kOne };
 SubprocessResult RunSubprocess(const std::filesystem::path& program,
                                const std::vector<std::string>& arguments,
                                const std::filesystem::path& log_path,
-                               const std::function<void(const std::string&)>& on_line,
-                               Cores cores = Cores::kAll);
+                               const std::function<void(const std::string&)>& on_line);
 
 }  // namespace colmap_seapoint
