@@ -1,13 +1,20 @@
 #include "tests/benchmark/detectors.h"
 
+#include <cstdio>
+#include <functional>
 #include <opencv2/features2d.hpp>
 #include <utility>
 
 #include "feature/extract_features.h"
 #include "feature/match_features.h"
+#include "tests/benchmark/pair_measures.h"
 
 namespace colmap_seapoint {
 namespace {
+
+// OpenCV's defaults first. Beyond the last ones lies rounding.
+constexpr double kFastThresholds[] = {20, 14, 10, 7, 5, 3, 2};
+constexpr double kContrastThresholds[] = {0.04, 0.028, 0.02, 0.014, 0.01, 0.007, 0.005, 0.0035};
 
 class SeaPointDetector : public FeatureDetector {
  public:
@@ -16,6 +23,10 @@ class SeaPointDetector : public FeatureDetector {
     extraction_.max_num_features = max_num_features;
   }
   std::string Name() const override { return "SeaPoints"; }
+  std::string Setting() const override {
+    return std::to_string(extraction_.min_num_features) + " to " +
+           std::to_string(extraction_.max_num_features);
+  }
   DetectedFeatures Extract(const GrayImage& picture) const override {
     return {ExtractFeatures(picture, GrayImage(), extraction_).features, {}};
   }
@@ -30,9 +41,13 @@ class SeaPointDetector : public FeatureDetector {
 
 class OpenCVDetector : public FeatureDetector {
  public:
-  OpenCVDetector(std::string name, cv::Ptr<cv::Feature2D> detector, int norm)
-      : name_(std::move(name)), detector_(std::move(detector)), norm_(norm) {}
+  OpenCVDetector(std::string name, std::string setting, cv::Ptr<cv::Feature2D> detector, int norm)
+      : name_(std::move(name)),
+        setting_(std::move(setting)),
+        detector_(std::move(detector)),
+        norm_(norm) {}
   std::string Name() const override { return name_; }
+  std::string Setting() const override { return setting_; }
   DetectedFeatures Extract(const GrayImage& picture) const override {
     const cv::Mat grey(picture.height, picture.width, CV_8U,
                        const_cast<uint8_t*>(picture.data.data()));
@@ -62,21 +77,57 @@ class OpenCVDetector : public FeatureDetector {
   }
 
  private:
-  std::string name_;
+  std::string name_, setting_;
   cv::Ptr<cv::Feature2D> detector_;
   int norm_;
 };
 
+using Detectors = std::vector<std::unique_ptr<FeatureDetector>>;
+using MakeDetector = std::function<std::unique_ptr<FeatureDetector>(double threshold)>;
+
+std::unique_ptr<FeatureDetector> MakeOrb(int num_features, double threshold) {
+  const auto fast_threshold = static_cast<int>(threshold);
+  return std::make_unique<OpenCVDetector>(
+      "ORB", "FAST " + std::to_string(fast_threshold),
+      cv::ORB::create(num_features, 1.2f, 8, 31, 0, 2, cv::ORB::HARRIS_SCORE, 31, fast_threshold),
+      cv::NORM_HAMMING);
+}
+
+std::unique_ptr<FeatureDetector> MakeSift(int num_features, double threshold) {
+  char setting[32];
+  std::snprintf(setting, sizeof(setting), "contrast %g", threshold);
+  return std::make_unique<OpenCVDetector>(
+      "SIFT", setting, cv::SIFT::create(num_features, 3, threshold), cv::NORM_L2);
+}
+
+template <size_t kCount>
+std::unique_ptr<FeatureDetector> Adjust(const MakeDetector& make,
+                                        const double (&thresholds)[kCount], int min_num_features,
+                                        const std::vector<GrayImage>& samples) {
+  std::unique_ptr<FeatureDetector> detector;
+  for (const double threshold : thresholds) {
+    detector = make(threshold);
+    std::vector<double> counts;
+    for (const GrayImage& sample : samples) {
+      counts.push_back(static_cast<double>(detector->Extract(sample).Points().size()));
+    }
+    if (counts.empty() || Median(counts) >= min_num_features) break;
+  }
+  return detector;
+}
+
 }  // namespace
 
 std::vector<std::unique_ptr<FeatureDetector>> MakeDetectors(int min_num_features,
-                                                            int max_num_features) {
-  std::vector<std::unique_ptr<FeatureDetector>> detectors;
+                                                            int max_num_features,
+                                                            const std::vector<GrayImage>& samples) {
+  Detectors detectors;
   detectors.push_back(std::make_unique<SeaPointDetector>(min_num_features, max_num_features));
+  detectors.push_back(Adjust([&](double threshold) { return MakeOrb(max_num_features, threshold); },
+                             kFastThresholds, min_num_features, samples));
   detectors.push_back(
-      std::make_unique<OpenCVDetector>("ORB", cv::ORB::create(max_num_features), cv::NORM_HAMMING));
-  detectors.push_back(
-      std::make_unique<OpenCVDetector>("SIFT", cv::SIFT::create(max_num_features), cv::NORM_L2));
+      Adjust([&](double threshold) { return MakeSift(max_num_features, threshold); },
+             kContrastThresholds, min_num_features, samples));
   return detectors;
 }
 

@@ -23,6 +23,7 @@ class FeatureDetector {
  public:
   virtual ~FeatureDetector() = default;
   virtual std::string Name() const = 0;
+  virtual std::string Setting() const = 0;  // what was chosen so that it finds enough points
   // Detection and description; the threads are the detector's own.
   virtual DetectedFeatures Extract(const GrayImage& picture) const = 0;
   // One-to-one nearest neighbours, then FilterFlow with its defaults.
@@ -30,9 +31,12 @@ class FeatureDetector {
                                const DetectedFeatures& features2) const = 0;
 };
 
-// SeaPoints (the baseline of all ratios), ORB, SIFT. ORB and SIFT are asked for `max_num_features`
-// and are otherwise as OpenCV makes them; they may find fewer.
+// SeaPoints (the baseline of all ratios), ORB, SIFT. ORB and SIFT are asked for `max_num_features`.
+// Their own thresholds (FAST, contrast) start at OpenCV's defaults and are lowered as a user would,
+// once for the whole set, until the median sample picture has `min_num_features` (paper 3:
+// "adjusted to produce a comparable number"). Without samples the defaults stay.
 std::vector<std::unique_ptr<FeatureDetector>> MakeDetectors(int min_num_features,
-                                                            int max_num_features);
+                                                            int max_num_features,
+                                                            const std::vector<GrayImage>& samples);
 
 }  // namespace colmap_seapoint

@@ -66,6 +66,8 @@ int Measure(const std::vector<std::string>& arguments) {
   add("set_name", po::value(&o.set_name), "in the tables; of the CSV when not given");
   add("min_num_features", Default(&o.min_num_features), "of SeaPoints, a picture");
   add("max_num_features", Default(&o.max_num_features), "of every detector, a picture");
+  add("adjust_thresholds", Default(&o.adjust_thresholds),
+      "1: lower ORB's and SIFT's own thresholds until they find min_num_features; 0: OpenCV's");
   add("num_repeats", Default(&o.num_repeats), "of every timing; the median counts");
   po::variables_map values;
   if (!Parse(description, arguments, &values)) return 0;

@@ -24,6 +24,7 @@ struct NumberColumn {
 
 constexpr TextColumn kTextColumns[] = {{"set", &FeatureRow::set},
                                        {"detector", &FeatureRow::detector},
+                                       {"setting", &FeatureRow::setting},
                                        {"picture1", &FeatureRow::picture1},
                                        {"picture2", &FeatureRow::picture2}};
 constexpr NumberColumn kNumberColumns[] = {{"gap", &FeatureRow::gap},

@@ -12,7 +12,7 @@ inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
 // Shares and areas 0..1; kNotMeasured (an empty field in the file) where nothing could be measured.
 struct FeatureRow {
-  std::string set, detector, picture1, picture2;
+  std::string set, detector, setting, picture1, picture2;
   double gap = 1;  // 1: (V, V+1), intrapair; 2: (V, V+2), interpair
   double points1 = 0, points2 = 0;
   double matches = 0;        // after the flow filter

@@ -16,6 +16,7 @@ FeatureRow MakeRow(const std::string& detector, int v1, int v2, double share, do
   FeatureRow row;
   row.set = "reef";
   row.detector = detector;
+  row.setting = "as it is";
   row.picture1 = "p" + std::to_string(v1);
   row.picture2 = "p" + std::to_string(v2);
   row.gap = v2 - v1;
@@ -38,8 +39,10 @@ std::vector<FeatureRow> Rows() {
 
 TEST(FeatureTablesTest, MediansOfPairsAndRatiosOfPictures) {
   const std::string text = MarkdownTables(Rows());
-  EXPECT_NE(text.find("| reef | 3 | SeaPoints | 3000 | 25.0 | 62.5 | 12.5 | 31.2 | 6.2 | 15.6 |\n"),
-            std::string::npos)
+  EXPECT_NE(
+      text.find(
+          "| reef | 3 | SeaPoints | as it is | 3000 | 25.0 | 62.5 | 12.5 | 31.2 | 6.2 | 15.6 |\n"),
+      std::string::npos)
       << text;
   EXPECT_NE(text.find("| reef | ORB | 8.000 | 0.2500 | 8.250 | 0.50 | 2.00 |\n"), std::string::npos)
       << text;
@@ -88,6 +91,7 @@ TEST(FeatureRowsTest, RoundTripAndDamage) {
   EXPECT_EQ(read[0].picture1, "a_b_c.jpg");
   for (size_t i = 0; i < rows.size(); ++i) {
     EXPECT_EQ(read[i].detector, rows[i].detector);
+    EXPECT_EQ(read[i].setting, rows[i].setting);
     EXPECT_EQ(read[i].gap, rows[i].gap);
     EXPECT_EQ(read[i].matched_share, rows[i].matched_share);
     EXPECT_EQ(read[i].match_cpu, rows[i].match_cpu);

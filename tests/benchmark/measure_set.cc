@@ -21,6 +21,8 @@
 namespace colmap_seapoint {
 namespace {
 
+constexpr size_t kMaxSamples = 5;
+
 using Detectors = std::vector<std::unique_ptr<FeatureDetector>>;
 
 struct Picture {
@@ -87,6 +89,7 @@ FeatureRow MakeRow(const FeatureDetector& detector, const Picture& picture1,
                                                   points2, matches, TwoViewVerificationOptions());
   FeatureRow row;
   row.detector = detector.Name();
+  row.setting = detector.Setting();
   row.picture1 = picture1.name;
   row.picture2 = picture2.name;
   row.points1 = static_cast<double>(points1.size());
@@ -140,7 +143,13 @@ std::vector<FeatureRow> MeasureSet(const MeasureOptions& options) {
   if (names.size() < 2) {
     throw Error(options.image_path.string(), "holds one picture only", "give two or more");
   }
-  const Detectors detectors = MakeDetectors(options.min_num_features, options.max_num_features);
+  std::vector<GrayImage> samples;
+  const size_t num_samples = options.adjust_thresholds ? std::min(kMaxSamples, names.size()) : 0;
+  for (size_t i = 0; i < num_samples; ++i) {
+    samples.push_back(ReadGrayImage(options.image_path / names[i * names.size() / num_samples]));
+  }
+  const Detectors detectors =
+      MakeDetectors(options.min_num_features, options.max_num_features, samples);
   SurveyTruth truth;
   std::optional<SurveyOracle> oracle;
   if (options.survey_path) {

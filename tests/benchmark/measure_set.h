@@ -15,6 +15,7 @@ struct MeasureOptions {
   std::filesystem::path image_path;                  // pictures, taken in natural order
   std::optional<std::filesystem::path> survey_path;  // demo survey they belong to
   int min_num_features = 2500, max_num_features = 3000;
+  bool adjust_thresholds = true;  // of ORB and SIFT, so that they find enough points
   int num_repeats = 3;  // timings of one picture or pair; detectors take turns; the median counts
 };
 
