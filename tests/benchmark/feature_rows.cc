@@ -43,6 +43,7 @@ constexpr NumberColumn kNumberColumns[] = {{"gap", &FeatureRow::gap},
                                            {"repeatability", &FeatureRow::repeatability},
                                            {"true_overlap", &FeatureRow::true_overlap},
                                            {"overlap_error", &FeatureRow::overlap_error},
+                                           {"textured", &FeatureRow::textured},
                                            {"recall", &FeatureRow::recall},
                                            {"area_precision", &FeatureRow::area_precision}};
 

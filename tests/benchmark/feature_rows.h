@@ -28,6 +28,7 @@ struct FeatureRow {
   double repeatability = kNotMeasured;
   double true_overlap = kNotMeasured;
   double overlap_error = kNotMeasured;
+  double textured = kNotMeasured;
   double recall = kNotMeasured;
   double area_precision = kNotMeasured;
 };

@@ -32,7 +32,7 @@ matching; pictures in natural order of their names. Shares are in percent.
 - overlap error: reliable area minus true overlap, in points; signed and absolute, each its median.
 - recall: share of the truly shared cells with texture that lie in the reliable area. Texture: the
   standard deviation of a cell's grey levels is above three times the noise (that of the picture's
-  flattest cells), and above 1.5; the limit's median is given.
+  flattest cells), and above 1.5; the share of such cells and the limit's median are given.
 - area precision: share of the reliable area that is truly shared.
 
 )";
@@ -165,6 +165,7 @@ std::string TruthLine(const Rows& rows, const std::string& set, const std::strin
   for (double FeatureRow::*field : {&FeatureRow::recall, &FeatureRow::area_precision}) {
     for (const Rows& selected : by_gap) line += " " + Percent(MedianOf(selected, field)) + " |";
   }
+  line += " " + Percent(MedianOf(by_gap[1], &FeatureRow::textured)) + " |";
   return line + " " + Text(MedianOf(by_gap[1], &FeatureRow::texture_limit), "%.1f") + " |\n";
 }
 
@@ -190,8 +191,8 @@ std::string MarkdownTables(const std::vector<FeatureRow>& rows) {
       "\n## Against the truth\n\n| set | detector | precision V,V+2 | precision V,V+1 | "
       "repeatability V,V+2 | repeatability V,V+1 | true overlap V,V+2 | its error | true overlap "
       "V,V+1 | its error | recall V,V+2 | recall V,V+1 | area precision V,V+2 | area precision "
-      "V,V+1 | texture limit |\n" +
-      Rule(15);
+      "V,V+1 | textured V,V+1 | texture limit |\n" +
+      Rule(16);
   bool any_truth = false;
   for (const std::string& set : Distinct(rows, &FeatureRow::set)) {
     for (const std::string& detector : Distinct(rows, &FeatureRow::detector)) {

@@ -57,6 +57,7 @@ TEST(FeatureTablesTest, TruthOnlyWhereItIsKnown) {
     row.repeatability = 0.8;
     row.true_overlap = 0.5;
     row.overlap_error = row.picture1 == "p0" ? -0.125 : 0.25;
+    row.textured = 0.5;
     row.recall = 0.75;
     row.area_precision = 1;
     row.texture_limit = 1.5;
@@ -65,7 +66,7 @@ TEST(FeatureTablesTest, TruthOnlyWhereItIsKnown) {
   const std::string truth = text.substr(text.find("## Against the truth"));
   EXPECT_NE(
       truth.find("| reef | SeaPoints | 90.0 | 90.0 | 80.0 | 80.0 | 50.0 | -12.5 / 12.5 | 50.0 "
-                 "| +6.2 / 18.8 | 75.0 | 75.0 | 100.0 | 100.0 | 1.5 |\n"),
+                 "| +6.2 / 18.8 | 75.0 | 75.0 | 100.0 | 100.0 | 50.0 | 1.5 |\n"),
       std::string::npos)
       << truth;
   EXPECT_EQ(truth.find("ORB"), std::string::npos);

@@ -76,6 +76,7 @@ void AddTruth(const SurveyOracle& oracle, const Picture& picture1, const Picture
   const OverlapScore score = ScoreOverlap(mask, shared, picture2.texture.textured);
   row->true_overlap = score.true_overlap;
   row->overlap_error = score.error;
+  row->textured = score.textured;
   row->recall = score.recall;
   row->area_precision = score.precision;
 }

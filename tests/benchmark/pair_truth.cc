@@ -116,6 +116,7 @@ OverlapScore ScoreOverlap(const InfluenceMask& mask, const std::vector<uint8_t>&
   OverlapScore score;
   score.true_overlap = Share(num_shared, shared.size());
   score.error = mask.OverlapRate() - score.true_overlap;
+  score.textured = Share(num_to_find, num_shared);
   score.recall = Share(num_found, num_to_find);
   score.precision = Share(num_rightly_marked, num_marked);
   return score;

@@ -61,6 +61,7 @@ std::vector<uint8_t> TrulyShared(const SurveyOracle& oracle, size_t image2, size
 struct OverlapScore {
   double true_overlap = 0;  // share of picture 2 that is truly shared
   double error = 0;         // the mask's overlap rate minus that
+  double textured = 0;      // share of the shared cells that are textured; NaN: none is shared
   double recall = 0;     // share of the shared, textured cells that are marked; NaN: no such cell
   double precision = 0;  // share of the marked cells that are shared; NaN: none is marked
 };

@@ -140,6 +140,7 @@ TEST(ScoreOverlapTest, CountsCells) {
   const OverlapScore score = ScoreOverlap(mask, shared, textured);
   EXPECT_EQ(score.true_overlap, 5.0 / 8);
   EXPECT_EQ(score.error, 4.0 / 8 - 5.0 / 8);
+  EXPECT_EQ(score.textured, 3.0 / 5);
   EXPECT_EQ(score.recall, 2.0 / 3);
   EXPECT_EQ(score.precision, 3.0 / 4);
 }
