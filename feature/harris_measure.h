@@ -1,4 +1,5 @@
-// Harris measure of every pixel (paper 2.3), in one streaming pass over the picture's rows.
+// The map of Harris measures of a whole picture (paper 2.3). The detector itself keeps no map: it
+// takes the rows one by one from feature/harris_rows.h, as this does.
 #pragma once
 
 #include "colmap_seapoint/base/image.h"
@@ -15,7 +16,7 @@ struct HarrisOptions {
 int HarrisBorder(const HarrisOptions& options);
 
 // Grey levels -> measure, same size. Gradients and products are integers (exact, whatever the
-// order of summation); only the last step is in float. Scratch memory is a few rows.
+// order of summation); only the last step is in float.
 FloatImage HarrisMeasure(const GrayImage& picture, const HarrisOptions& options);
 
 }  // namespace colmap_seapoint

@@ -6,21 +6,13 @@
 #define SEAPOINT_VECTOR_CLONES
 
 // Everything with a linker name gets another one, so that both versions live in one program.
-#define HarrisBorder ClonelessHarrisBorder
-#define HarrisMeasure ClonelessHarrisMeasure
-#define HarrisOptions ClonelessHarrisOptions
 #define HammingDistance ClonelessHammingDistance
 #define HammingMatcherOptions ClonelessHammingMatcherOptions
 #define MatchHamming ClonelessMatchHamming
 #include "feature/hamming_matcher.cc"  // NOLINT(bugprone-suspicious-include)
-#include "feature/harris_measure.cc"   // NOLINT(bugprone-suspicious-include)
+
 
 namespace colmap_seapoint {
-
-FloatImage PortableHarrisMeasure(const GrayImage& picture, double smoothing_sigma, int window_size,
-                                 double k) {
-  return ClonelessHarrisMeasure(picture, {smoothing_sigma, window_size, k});
-}
 
 FeatureMatches PortableMatchHamming(const std::vector<Descriptor>& descriptors1,
                                     const std::vector<Descriptor>& descriptors2, int max_distance,

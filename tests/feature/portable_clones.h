@@ -5,12 +5,9 @@
 #include <vector>
 
 #include "colmap_seapoint/base/features.h"
-#include "colmap_seapoint/base/image.h"
 
 namespace colmap_seapoint {
 
-FloatImage PortableHarrisMeasure(const GrayImage& picture, double smoothing_sigma, int window_size,
-                                 double k);
 FeatureMatches PortableMatchHamming(const std::vector<Descriptor>& descriptors1,
                                     const std::vector<Descriptor>& descriptors2, int max_distance,
                                     double max_ratio);
