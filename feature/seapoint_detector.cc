@@ -4,66 +4,32 @@
 #include <cmath>
 
 #include "feature/harris_measure.h"
+#include "feature/local_maxima.h"
 
 namespace colmap_seapoint {
 
 namespace {
 
-struct LocalMaximum {
-  int x, y;
+struct Corner {
+  const LocalMaximum* maximum;
   float measure;  // remapped to 0..255
 };
 
-// Greatest in its (2 radius + 1)^2 window; of equal ones the first in raster order.
-bool IsLocalMaximum(const FloatImage& map, int x, int y, int radius) {
-  const float value = map.At(x, y);
-  const int x_begin = std::max(0, x - radius), x_end = std::min(map.width - 1, x + radius);
-  const int y_begin = std::max(0, y - radius), y_end = std::min(map.height - 1, y + radius);
-  for (int v = y_begin; v <= y_end; ++v) {
-    const float* row = map.Row(v);
-    for (int u = x_begin; u <= x_end; ++u) {
-      if (row[u] > value) return false;
-      if (row[u] == value && (v < y || (v == y && u < x))) return false;
-    }
-  }
-  return true;
-}
-
-// Non-maximum suppression of the map of Harris measures; corners only (measure above 0: below it
-// are edges, at it there is no texture). Cheap 3 x 3 test first.
-std::vector<LocalMaximum> SuppressNonMaxima(const FloatImage& map, const GrayImage& mask,
-                                            int radius, int border) {
-  std::vector<LocalMaximum> maxima;
-  for (int y = border; y < map.height - border; ++y) {
-    const float* above = map.Row(y - 1);
-    const float* row = map.Row(y);
-    const float* below = map.Row(y + 1);
-    for (int x = border; x < map.width - border; ++x) {
-      const float value = row[x];
-      if (!(value > 0) || value < row[x - 1] || value < row[x + 1] || value < above[x] ||
-          value < below[x]) {
-        continue;
-      }
-      if (!mask.Empty() && mask.At(x, y) == 0) continue;
-      if (IsLocalMaximum(map, x, y, radius)) maxima.push_back({x, y, value});
-    }
-  }
-  return maxima;
-}
-
 // Remaps to 0..255 by the extremes of the whole map (paper 2.3).
-void Remap(const FloatImage& map, std::vector<LocalMaximum>* maxima) {
-  if (maxima->empty()) return;
-  const auto [lowest, highest] = std::minmax_element(map.data.begin(), map.data.end());
-  const double scale = 255.0 / (static_cast<double>(*highest) - *lowest);
-  for (LocalMaximum& maximum : *maxima) {
-    maximum.measure = static_cast<float>((static_cast<double>(maximum.measure) - *lowest) * scale);
+std::vector<float> Remapped(const LocalMaxima& found) {
+  std::vector<float> measures;
+  measures.reserve(found.maxima.size());
+  const double scale = 255.0 / (static_cast<double>(found.highest) - found.lowest);
+  for (const LocalMaximum& maximum : found.maxima) {
+    const double above_lowest = static_cast<double>(maximum.measure()) - found.lowest;
+    measures.push_back(static_cast<float>(above_lowest * scale));
   }
+  return measures;
 }
 
 // Ours: the top of the quadratic through the 3 x 3 neighbourhood, at most half a pixel away.
-SeaPoint FitSubPixel(const FloatImage& map, int x, int y) {
-  auto at = [&](int dx, int dy) { return static_cast<double>(map.At(x + dx, y + dy)); };
+SeaPoint FitSubPixel(const LocalMaximum& maximum) {
+  auto at = [&](int dx, int dy) { return static_cast<double>(maximum.around[4 + 3 * dy + dx]); };
   const double gx = 0.5 * (at(1, 0) - at(-1, 0));
   const double gy = 0.5 * (at(0, 1) - at(0, -1));
   const double xx = at(1, 0) - 2 * at(0, 0) + at(-1, 0);
@@ -76,8 +42,8 @@ SeaPoint FitSubPixel(const FloatImage& map, int x, int y) {
     dy = std::clamp(-(xx * gy - xy * gx) / det, -0.5, 0.5);
   }
   SeaPoint point;
-  point.x = static_cast<float>(x + 0.5 + dx);
-  point.y = static_cast<float>(y + 0.5 + dy);
+  point.x = static_cast<float>(maximum.x + 0.5 + dx);
+  point.y = static_cast<float>(maximum.y + 0.5 + dy);
   return point;
 }
 
@@ -123,36 +89,28 @@ std::string SeaPointExtractionOptions::Check() const {
 
 std::vector<SeaPoint> DetectSeaPoints(const GrayImage& picture, const GrayImage& mask,
                                       const SeaPointExtractionOptions& options, int border,
-                                      DetectionSummary* summary) {
+                                      DetectionSummary* summary, int num_threads) {
   const HarrisOptions harris = {options.smoothing_sigma, options.window_size, options.harris_k};
-  const FloatImage map = HarrisMeasure(picture, harris);
   border = std::max(border, HarrisBorder(harris) + 1);
-  std::vector<LocalMaximum> maxima =
-      SuppressNonMaxima(map, mask, NmsRadius(picture, options), border);
-  Remap(map, &maxima);
-
-  std::vector<float> measures;
-  for (const LocalMaximum& maximum : maxima) measures.push_back(maximum.measure);
+  const LocalMaxima found =
+      FindLocalMaxima(picture, mask, harris, NmsRadius(picture, options), border, num_threads);
+  const std::vector<float> measures = Remapped(found);
   const AdaptiveThreshold threshold =
       FindAdaptiveThreshold(measures, options.min_num_features, options.max_num_features);
   summary->status = threshold.status;
   summary->threshold = threshold.threshold;
   summary->num_rounds = threshold.num_rounds;
-  summary->num_local_maxima = static_cast<int>(maxima.size());
+  summary->num_local_maxima = static_cast<int>(measures.size());
 
   std::vector<SeaPoint> points;
   if (threshold.count == 0) return points;
-  maxima.erase(std::remove_if(maxima.begin(), maxima.end(),
-                              [&](const LocalMaximum& maximum) {
-                                return maximum.measure < threshold.threshold;
-                              }),
-               maxima.end());
-  std::stable_sort(maxima.begin(), maxima.end(), [](const LocalMaximum& a, const LocalMaximum& b) {
-    return a.measure > b.measure;
-  });
-  for (const LocalMaximum& maximum : maxima) {
-    points.push_back(FitSubPixel(map, maximum.x, maximum.y));
+  std::vector<Corner> corners;
+  for (size_t i = 0; i < measures.size(); ++i) {
+    if (measures[i] >= threshold.threshold) corners.push_back({&found.maxima[i], measures[i]});
   }
+  std::stable_sort(corners.begin(), corners.end(),
+                   [](const Corner& a, const Corner& b) { return a.measure > b.measure; });
+  for (const Corner& corner : corners) points.push_back(FitSubPixel(*corner.maximum));
   return points;
 }
 
