@@ -1,49 +1,19 @@
 #include "feature/hamming_matcher.h"
 
-#include <cstring>
+#include <algorithm>
 
-#include "colmap_seapoint/base/vector_clones.h"
+#include "feature/hamming_kernels.h"
 
 namespace colmap_seapoint {
 
 namespace {
 
-struct Words {
-  uint64_t word[4];
-};
-
-std::vector<Words> ToWords(const std::vector<Descriptor>& descriptors) {
-  std::vector<Words> words(descriptors.size());
-  for (size_t i = 0; i < descriptors.size(); ++i) {
-    std::memcpy(words[i].word, descriptors[i].data(), sizeof(Words));
-  }
-  return words;
-}
-
-struct Nearest {
-  int distance = 257;
-  int second_distance = 257;
-  uint32_t idx = 0;
-
-  void Update(int candidate, uint32_t candidate_idx) {
-    if (candidate < distance) {
-      second_distance = distance;
-      distance = candidate;
-      idx = candidate_idx;
-    } else if (candidate < second_distance) {
-      second_distance = candidate;
-    }
-  }
-};
-
-SEAPOINT_VECTOR_CLONES
-void DistancesToAll(const Words& query, const Words* words, size_t count, int* distances) {
-  for (size_t j = 0; j < count; ++j) {
-    distances[j] = __builtin_popcountll(query.word[0] ^ words[j].word[0]) +
-                   __builtin_popcountll(query.word[1] ^ words[j].word[1]) +
-                   __builtin_popcountll(query.word[2] ^ words[j].word[2]) +
-                   __builtin_popcountll(query.word[3] ^ words[j].word[3]);
-  }
+// From where on a distance does not matter: neither as the nearest nor as a second nearest, which
+// every nearest within max_distance passes against.
+int DistanceCap(const HammingMatcherOptions& options) {
+  int cap = 0;
+  while (cap <= 256 && options.max_ratio * cap < options.max_distance) ++cap;
+  return std::max(cap, options.max_distance + 1);
 }
 
 }  // namespace
@@ -66,24 +36,19 @@ int HammingDistance(const Descriptor& a, const Descriptor& b) {
 FeatureMatches MatchHamming(const std::vector<Descriptor>& descriptors1,
                             const std::vector<Descriptor>& descriptors2,
                             const HammingMatcherOptions& options) {
-  const std::vector<Words> words1 = ToWords(descriptors1), words2 = ToWords(descriptors2);
-  std::vector<Nearest> nearest1(words1.size()), nearest2(words2.size());
-  std::vector<int> distances(words2.size());
-  for (uint32_t i = 0; i < words1.size(); ++i) {
-    DistancesToAll(words1[i], words2.data(), words2.size(), distances.data());
-    for (uint32_t j = 0; j < words2.size(); ++j) {
-      nearest1[i].Update(distances[j], j);
-      nearest2[j].Update(distances[j], i);
-    }
-  }
-  auto passes = [&](const Nearest& nearest) {
+  const hamming::Nearest none = {DistanceCap(options), DistanceCap(options), 0};
+  std::vector<hamming::Nearest> nearest1(descriptors1.size(), none);
+  std::vector<hamming::Nearest> nearest2(descriptors2.size(), none);
+  hamming::FindNearest(descriptors1, descriptors2, options.max_ratio < 1, &nearest1, &nearest2);
+  auto passes = [&](const hamming::Nearest& nearest) {
     return nearest.distance <= options.max_distance &&
-           nearest.distance <= options.max_ratio * nearest.second_distance;
+           (options.max_ratio >= 1 ||
+            nearest.distance <= options.max_ratio * nearest.second_distance);
   };
   FeatureMatches matches;
-  for (uint32_t i = 0; i < words1.size(); ++i) {
+  for (uint32_t i = 0; i < descriptors1.size(); ++i) {
     if (!passes(nearest1[i])) continue;
-    const Nearest& back = nearest2[nearest1[i].idx];
+    const hamming::Nearest& back = nearest2[nearest1[i].idx];
     if (back.idx == i && passes(back)) matches.push_back({i, nearest1[i].idx});
   }
   return matches;

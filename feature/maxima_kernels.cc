@@ -73,7 +73,7 @@ HWY_INLINE hn::Vec<D> GreatestOf(D df, const float* at, size_t count, hn::Mask<D
   for (; count > num_lanes; at += num_lanes, count -= num_lanes) {
     greatest = hn::Max(greatest, hn::LoadU(df, at));
   }
-  return hn::Max(greatest, hn::MaskedLoad(last, df, at));
+  return hn::Max(greatest, hn::IfThenElseZero(last, hn::LoadU(df, at)));
 }
 
 bool IsGreatest(const float* const* rows, int radius, int x) {

@@ -8,7 +8,7 @@
 #include <random>
 #include <set>
 
-#include "tests/feature/portable_clones.h"
+#include "tests/feature/vector_targets.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -100,8 +100,8 @@ TEST(HammingMatcherTest, EqualsBruteForce) {
         options.max_distance = max_distance;
         options.max_ratio = max_ratio;
         const FeatureMatches expected = OracleMatches(set1, set2, options);
-        ASSERT_EQ(MatchHamming(set1, set2, options), expected) << seed;
-        ASSERT_EQ(PortableMatchHamming(set1, set2, max_distance, max_ratio), expected) << seed;
+        ForEachVectorTarget(
+            [&] { ASSERT_EQ(MatchHamming(set1, set2, options), expected) << seed; });
         total += expected.size();
       }
     }
