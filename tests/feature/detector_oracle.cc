@@ -58,11 +58,6 @@ SeaPoint TopOfQuadratic(const FloatImage& map, int x, int y) {
   return point;
 }
 
-struct Candidate {
-  int x, y;
-  float measure;
-};
-
 float ThresholdIn(const std::vector<float>& values, double low, double high, int count_above,
                   float threshold_above, int min_count, int max_count) {
   std::vector<std::vector<float>> bins(256);
@@ -126,17 +121,18 @@ float OracleThreshold(const std::vector<float>& measures, int min_count, int max
                      max_count);
 }
 
-std::vector<SeaPoint> OracleDetect(const GrayImage& picture, const GrayImage& mask,
-                                   const SeaPointExtractionOptions& options, int border) {
-  const FloatImage map = OracleHarrisMeasure(
-      picture, {options.smoothing_sigma, options.window_size, options.harris_k});
-  const auto [lowest, highest] = std::minmax_element(map.data.begin(), map.data.end());
-  std::vector<Candidate> candidates;
+LocalMaxima OracleLocalMaxima(const FloatImage& map, const GrayImage& mask, int radius,
+                              int border) {
+  LocalMaxima found;
+  for (const float measure : map.data) {
+    found.lowest = std::min(found.lowest, measure);
+    found.highest = std::max(found.highest, measure);
+  }
   for (int y = border; y < map.height - border; ++y) {
     for (int x = border; x < map.width - border; ++x) {
       bool first_of_greatest = map.At(x, y) > 0 && (mask.Empty() || mask.At(x, y) != 0);
-      for (int v = y - options.nms_radius; v <= y + options.nms_radius; ++v) {
-        for (int u = x - options.nms_radius; u <= x + options.nms_radius; ++u) {
+      for (int v = y - radius; v <= y + radius; ++v) {
+        for (int u = x - radius; u <= x + radius; ++u) {
           if (!map.Contains(u, v) || (u == x && v == y)) continue;
           const bool earlier = std::make_pair(v, u) < std::make_pair(y, x);
           if (map.At(u, v) > map.At(x, y) || (map.At(u, v) == map.At(x, y) && earlier)) {
@@ -145,21 +141,37 @@ std::vector<SeaPoint> OracleDetect(const GrayImage& picture, const GrayImage& ma
         }
       }
       if (!first_of_greatest) continue;
-      const double remapped = (static_cast<double>(map.At(x, y)) - *lowest) *
-                              (255.0 / (static_cast<double>(*highest) - *lowest));
-      candidates.push_back({x, y, static_cast<float>(remapped)});
+      LocalMaximum maximum;
+      maximum.x = x;
+      maximum.y = y;
+      for (int i = 0; i < 9; ++i) maximum.around[i] = map.At(x + i % 3 - 1, y + i / 3 - 1);
+      found.maxima.push_back(maximum);
     }
   }
+  return found;
+}
+
+std::vector<SeaPoint> OracleDetect(const GrayImage& picture, const GrayImage& mask,
+                                   const SeaPointExtractionOptions& options, int border) {
+  const FloatImage map = OracleHarrisMeasure(
+      picture, {options.smoothing_sigma, options.window_size, options.harris_k});
+  const LocalMaxima found = OracleLocalMaxima(map, mask, options.nms_radius, border);
+  std::vector<std::pair<float, const LocalMaximum*>> candidates;
   std::vector<float> measures;
-  for (const Candidate& candidate : candidates) measures.push_back(candidate.measure);
+  for (const LocalMaximum& maximum : found.maxima) {
+    const double remapped = (static_cast<double>(maximum.measure()) - found.lowest) *
+                            (255.0 / (static_cast<double>(found.highest) - found.lowest));
+    measures.push_back(static_cast<float>(remapped));
+    candidates.emplace_back(measures.back(), &maximum);
+  }
   const float threshold =
       OracleThreshold(measures, options.min_num_features, options.max_num_features);
   std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.measure > b.measure; });
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<SeaPoint> points;
-  for (const Candidate& candidate : candidates) {
-    if (candidate.measure < threshold) break;
-    points.push_back(TopOfQuadratic(map, candidate.x, candidate.y));
+  for (const auto& [measure, maximum] : candidates) {
+    if (measure < threshold) break;
+    points.push_back(TopOfQuadratic(map, maximum->x, maximum->y));
   }
   return points;
 }

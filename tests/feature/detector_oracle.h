@@ -6,6 +6,7 @@
 #include "colmap_seapoint/base/features.h"
 #include "colmap_seapoint/base/image.h"
 #include "feature/harris_measure.h"
+#include "feature/local_maxima.h"
 #include "feature/seapoint_detector.h"
 
 namespace colmap_seapoint {
@@ -17,6 +18,9 @@ FloatImage OracleHarrisMeasure(const GrayImage& picture, const HarrisOptions& op
 // ... In such cases, we recalculate the histogram for the values located between the current bin's
 // bounds". Returns the threshold; infinity when no value is kept.
 float OracleThreshold(const std::vector<float>& measures, int min_count, int max_count);
+
+// Greatest of its window, of equals the first in raster order.
+LocalMaxima OracleLocalMaxima(const FloatImage& map, const GrayImage& mask, int radius, int border);
 
 // Everything of Figure 4, and the sub-pixel fit. nms_radius must be given.
 std::vector<SeaPoint> OracleDetect(const GrayImage& picture, const GrayImage& mask,

@@ -109,6 +109,87 @@ TEST(HammingMatcherTest, EqualsBruteForce) {
   EXPECT_GT(total, 1000u);
 }
 
+// One loop over all pairs, no cap, no vectors: every distance is entered on both sides.
+FeatureMatches ScalarMatches(const std::vector<Descriptor>& descriptors1,
+                             const std::vector<Descriptor>& descriptors2,
+                             const HammingMatcherOptions& options) {
+  struct Best {
+    int distance = 257, second = 257;
+    uint32_t idx = 0;
+    void Enter(int candidate, uint32_t candidate_idx) {
+      second = std::min(second, std::max(distance, candidate));
+      if (candidate < distance) idx = candidate_idx;
+      distance = std::min(distance, candidate);
+    }
+  };
+  std::vector<Best> best1(descriptors1.size()), best2(descriptors2.size());
+  for (uint32_t i = 0; i < best1.size(); ++i) {
+    for (uint32_t j = 0; j < best2.size(); ++j) {
+      const int distance = HammingDistance(descriptors1[i], descriptors2[j]);
+      best1[i].Enter(distance, j);
+      best2[j].Enter(distance, i);
+    }
+  }
+  const auto passes = [&](const Best& best) {
+    return best.distance <= options.max_distance &&
+           best.distance <= options.max_ratio * best.second;
+  };
+  FeatureMatches matches;
+  for (uint32_t i = 0; i < best1.size(); ++i) {
+    const uint32_t j = best1[i].idx;
+    if (passes(best1[i]) && best2[j].idx == i && passes(best2[j])) matches.push_back({i, j});
+  }
+  return matches;
+}
+
+// Around the numbers of descriptors that go through the vectors together, and several times that.
+TEST(HammingMatcherTest, EqualsTheScalarLoopWithManyDescriptors) {
+  size_t total = 0;
+  unsigned seed = 100;
+  for (const auto& [count1, count2] : std::vector<std::pair<size_t, size_t>>{
+           {1, 300}, {300, 1}, {64, 65}, {127, 128}, {129, 255}, {40, 257}, {333, 1100}}) {
+    std::vector<Descriptor> set1, set2;
+    MakeDescriptors(++seed, count1, count2, &set1, &set2);
+    for (const double max_ratio : {1.0, 0.95, 0.7, 0.1}) {
+      for (const int max_distance : {256, 255, 128, 80, 1, 0}) {
+        HammingMatcherOptions options;
+        options.max_distance = max_distance;
+        options.max_ratio = max_ratio;
+        const FeatureMatches expected = ScalarMatches(set1, set2, options);
+        ForEachVectorTarget([&] { EXPECT_EQ(MatchHamming(set1, set2, options), expected); });
+        total += expected.size();
+      }
+    }
+  }
+  EXPECT_GT(total, 1000u);
+}
+
+// 255 and 256 bits apart: the distances do not fit the bytes in which they are compared.
+TEST(HammingMatcherTest, AllBitsApart) {
+  Descriptor zeros{}, ones, all_but_one;
+  ones.fill(0xFF);
+  all_but_one = ones;
+  all_but_one[31] = 0x7F;
+  size_t total = 0;
+  for (const size_t count1 : {1, 2}) {
+    const std::vector<Descriptor> set1(count1, zeros);
+    for (const auto& set2 :
+         {std::vector<Descriptor>{ones}, {ones, all_but_one}, {all_but_one, ones}, {ones, ones}}) {
+      for (const int max_distance : {254, 255, 256}) {
+        for (const double max_ratio : {1.0, 0.999, 0.99}) {
+          HammingMatcherOptions options;
+          options.max_distance = max_distance;
+          options.max_ratio = max_ratio;
+          const FeatureMatches expected = ScalarMatches(set1, set2, options);
+          ForEachVectorTarget([&] { EXPECT_EQ(MatchHamming(set1, set2, options), expected); });
+          total += expected.size();
+        }
+      }
+    }
+  }
+  EXPECT_GT(total, 12u);  // 6 each of count1 without a ratio test, and some with it
+}
+
 TEST(HammingMatcherTest, OneToOneAndSorted) {
   std::vector<Descriptor> set1, set2;
   MakeDescriptors(77, 120, 90, &set1, &set2);
