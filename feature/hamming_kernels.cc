@@ -38,7 +38,7 @@ struct DistanceTable {
     }
   }
 };
-constexpr DistanceTable kDistanceTable;
+[[maybe_unused]] constexpr DistanceTable kDistanceTable;
 
 int ExactDistance(const Descriptor& a, const Descriptor& b) {
   uint64_t words_a[4], words_b[4];
