@@ -1,6 +1,6 @@
 #include "feature/flow_filter.h"
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <nanoflann.hpp>
@@ -40,6 +40,31 @@ bool Agree(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const FlowFilterO
   return a.dot(b) >= min_cos * norm_a * norm_b;
 }
 
+// The middle of the rectangle that holds all points: of the picture, as far as they tell.
+Eigen::Vector2f MiddleOf(const std::vector<SeaPoint>& points) {
+  Eigen::Vector2f low(points[0].x, points[0].y), high = low;
+  for (const SeaPoint& point : points) {
+    low = low.cwiseMin(Eigen::Vector2f(point.x, point.y));
+    high = high.cwiseMax(Eigen::Vector2f(point.x, point.y));
+  }
+  return 0.5f * (low + high);
+}
+
+std::vector<Eigen::Vector2f> FlowVectors(const std::vector<SeaPoint>& points1,
+                                         const std::vector<SeaPoint>& points2,
+                                         const FeatureMatches& matches, double turn) {
+  const Eigen::Matrix2f rotation = Eigen::Rotation2Df(static_cast<float>(turn)).toRotationMatrix();
+  const Eigen::Vector2f middle = MiddleOf(points1);
+  std::vector<Eigen::Vector2f> vectors;
+  vectors.reserve(matches.size());
+  for (const FeatureMatch& match : matches) {
+    const Eigen::Vector2f from(points1[match.idx1].x, points1[match.idx1].y);
+    const Eigen::Vector2f to(points2[match.idx2].x, points2[match.idx2].y);
+    vectors.emplace_back(to - middle - rotation * (from - middle));
+  }
+  return vectors;
+}
+
 }  // namespace
 
 void FlowFilterOptions::Bind(OptionTable* table) {
@@ -57,15 +82,9 @@ void FlowFilterOptions::Bind(OptionTable* table) {
 
 FeatureMatches FilterFlow(const std::vector<SeaPoint>& points1,
                           const std::vector<SeaPoint>& points2, const FeatureMatches& matches,
-                          const FlowFilterOptions& options) {
+                          double turn, const FlowFilterOptions& options) {
   if (matches.empty()) return {};
-  std::vector<Eigen::Vector2f> vectors;
-  vectors.reserve(matches.size());
-  for (const FeatureMatch& match : matches) {
-    const SeaPoint& from = points1[match.idx1];
-    const SeaPoint& to = points2[match.idx2];
-    vectors.emplace_back(to.x - from.x, to.y - from.y);
-  }
+  const std::vector<Eigen::Vector2f> vectors = FlowVectors(points1, points2, matches, turn);
 
   const MatchPositions positions{points1, matches};
   MatchTree tree(2, positions, nanoflann::KDTreeSingleIndexAdaptorParams(16));

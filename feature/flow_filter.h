@@ -22,9 +22,12 @@ struct FlowFilterOptions {
 // Keeps the matches that at least min_votes of their num_neighbors nearest neighbours (in the first
 // picture, among the matches) vote for: direction within max_angle_deg and norm within
 // max_norm_difference of the larger norm, or the vectors less than min_tolerance pixels apart
-// (ours: at small motion the direction says nothing). Order is kept. O(n log n).
+// (ours: at small motion the direction says nothing). `turn`: how far picture 2 is turned against
+// picture 1, radians, from x towards y; the vectors are those that are left once picture 1
+// was turned likewise about its middle (ours: the flow of a neighbouring strip, flown the other way,
+// is then as even as that of the next picture). Order is kept. O(n log n).
 FeatureMatches FilterFlow(const std::vector<SeaPoint>& points1,
                           const std::vector<SeaPoint>& points2, const FeatureMatches& matches,
-                          const FlowFilterOptions& options);
+                          double turn, const FlowFilterOptions& options);
 
 }  // namespace colmap_seapoint

@@ -1,5 +1,9 @@
 #include "feature/match_features.h"
 
+#include "feature/picture_turn.h"
+#include "feature/rbrief_descriptor.h"
+#include "feature/rbrief_pattern.h"
+
 namespace colmap_seapoint {
 
 void SeaPointMatchingOptions::Bind(OptionTable* table) {
@@ -10,9 +14,10 @@ void SeaPointMatchingOptions::Bind(OptionTable* table) {
 
 FeatureMatches MatchSeaPoints(const Features& features1, const Features& features2,
                               const SeaPointMatchingOptions& options) {
-  const FeatureMatches nearest =
-      MatchHamming(features1.descriptors, features2.descriptors, options.hamming);
-  return FilterFlow(features1.points, features2.points, nearest, options.flow);
+  const int turn = FindPictureTurn(features1, features2);
+  const FeatureMatches nearest = MatchHamming(TurnDescriptors(features1.descriptors, turn),
+                                              features2.descriptors, options.hamming);
+  return FilterFlow(features1.points, features2.points, nearest, turn * kTurnStep, options.flow);
 }
 
 MatchedPair MatchFeatures(const Camera& camera1, const Features& features1, const Camera& camera2,

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <opencv2/imgproc.hpp>
 
+#include "feature/local_contrast.h"
 #include "feature/rbrief_pattern.h"
 
 namespace colmap_seapoint {
@@ -11,16 +13,6 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr int kCentroidRadius = 15;
-constexpr double kSmoothingSigma = 2.5;  // of the grey levels that are compared
-
-GrayImage Smooth(const GrayImage& picture) {
-  GrayImage smooth(picture.width, picture.height);
-  const cv::Mat source(picture.height, picture.width, CV_8U,
-                       const_cast<uint8_t*>(picture.data.data()));
-  cv::Mat target(smooth.height, smooth.width, CV_8U, smooth.data.data());
-  cv::GaussianBlur(source, target, cv::Size(11, 11), kSmoothingSigma);
-  return smooth;
-}
 
 // Half width of the disc's rows. Rounded down: exactly the pixels with x^2 + y^2 <= radius^2, as
 // wide as high. (Rounded to nearest, columns are cut otherwise than rows, and quarter turns of a
@@ -50,22 +42,40 @@ float CentroidOrientation(const GrayImage& picture, int x, int y,
   return std::atan2(static_cast<float>(moment_y), static_cast<float>(moment_x));
 }
 
-Descriptor Describe(const GrayImage& smooth, int x, int y, float orientation) {
-  const float c = std::cos(orientation), s = std::sin(orientation);
-  auto sample = [&](const std::array<int8_t, 2>& offset) {
-    const int u = static_cast<int>(std::lrint(c * offset[0] - s * offset[1]));
-    const int v = static_cast<int>(std::lrint(s * offset[0] + c * offset[1]));
-    return smooth.At(x + u, y + v);
-  };
-  const std::array<RBriefTest, 256>& pattern = RBriefPattern();
-  Descriptor descriptor{};
+// Where the pattern's pixels lie in memory around a point, first and second of every test.
+std::array<std::ptrdiff_t, 512> PatternOffsets(size_t stride) {
+  std::array<std::ptrdiff_t, 512> offsets{};
   for (size_t bit = 0; bit < 256; ++bit) {
-    const RBriefTest& test = pattern[bit];
-    if (sample(test.first) < sample(test.second)) {
-      descriptor[bit / 8] = static_cast<uint8_t>(descriptor[bit / 8] | (1u << (bit % 8)));
+    const RBriefTest& test = RBriefPattern()[bit];
+    const auto row = static_cast<std::ptrdiff_t>(stride);
+    offsets[2 * bit] = test.first[1] * row + test.first[0];
+    offsets[2 * bit + 1] = test.second[1] * row + test.second[0];
+  }
+  return offsets;
+}
+
+// `sample(i)`: the i-th of the pattern's 512 pixels.
+template <typename Sample>
+Descriptor Compare(const Sample& sample) {
+  Descriptor descriptor{};
+  for (size_t byte = 0; byte < descriptor.size(); ++byte) {
+    unsigned bits = 0;
+    for (size_t bit = 0; bit < 8; ++bit) {
+      const size_t test = 8 * byte + bit;
+      bits |= static_cast<unsigned>(sample(2 * test) < sample(2 * test + 1)) << bit;
     }
+    descriptor[byte] = static_cast<uint8_t>(bits);
   }
   return descriptor;
+}
+
+Descriptor DescribeNearEdge(const Image<int16_t>& contrast, int x, int y) {
+  return Compare([&](size_t i) {
+    const RBriefTest& test = RBriefPattern()[i / 2];
+    const auto& offset = i % 2 == 0 ? test.first : test.second;
+    return contrast.At(std::clamp(x + offset[0], 0, contrast.width - 1),
+                       std::clamp(y + offset[1], 0, contrast.height - 1));
+  });
 }
 
 }  // namespace
@@ -73,15 +83,46 @@ Descriptor Describe(const GrayImage& smooth, int x, int y, float orientation) {
 std::vector<Descriptor> DescribeSeaPoints(const GrayImage& picture, std::vector<SeaPoint>* points) {
   std::vector<Descriptor> descriptors;
   if (points->empty()) return descriptors;
-  const GrayImage smooth = Smooth(picture);
+  const Image<int16_t> contrast = LocalContrast(picture);
   const std::vector<int> half_widths = DiscHalfWidths();
+  const std::array<std::ptrdiff_t, 512> offsets = PatternOffsets(contrast.Stride());
   descriptors.reserve(points->size());
   for (SeaPoint& point : *points) {
     const int x = static_cast<int>(point.x), y = static_cast<int>(point.y);
-    point.orientation = CentroidOrientation(smooth, x, y, half_widths);
-    descriptors.push_back(Describe(smooth, x, y, point.orientation));
+    point.orientation = CentroidOrientation(picture, x, y, half_widths);
+    const bool is_inside = x >= kPatternRadius && y >= kPatternRadius &&
+                           x + kPatternRadius < contrast.width &&
+                           y + kPatternRadius < contrast.height;
+    const int16_t* center = contrast.Row(y) + x;
+    descriptors.push_back(is_inside ? Compare([&](size_t i) { return center[offsets[i]]; })
+                                    : DescribeNearEdge(contrast, x, y));
   }
   return descriptors;
+}
+
+Descriptor TurnDescriptor(const Descriptor& descriptor, int turns) {
+  const unsigned left = static_cast<unsigned>(turns) % kNumTurns;
+  Descriptor turned;
+  for (size_t word = 0; word < 8; ++word) {
+    uint32_t bits = 0;  // bit k of the word is bit k % 8 of its byte k / 8
+    for (size_t byte = 0; byte < 4; ++byte) {
+      bits |= static_cast<uint32_t>(descriptor[4 * word + byte]) << (8 * byte);
+    }
+    bits = bits << left | bits >> ((kNumTurns - left) % kNumTurns);
+    for (size_t byte = 0; byte < 4; ++byte) {
+      turned[4 * word + byte] = static_cast<uint8_t>(bits >> (8 * byte));
+    }
+  }
+  return turned;
+}
+
+std::vector<Descriptor> TurnDescriptors(const std::vector<Descriptor>& descriptors, int turns) {
+  std::vector<Descriptor> turned;
+  turned.reserve(descriptors.size());
+  for (const Descriptor& descriptor : descriptors) {
+    turned.push_back(TurnDescriptor(descriptor, turns));
+  }
+  return turned;
 }
 
 }  // namespace colmap_seapoint

@@ -1,32 +1,35 @@
 #include "feature/rbrief_pattern.h"
 
-#include <random>
+#include <cmath>
 
 namespace colmap_seapoint {
 
 namespace {
 
-std::array<RBriefTest, 256> DrawPattern() {
-  std::mt19937 generator(7);
-  auto draw_point = [&generator] {
-    const auto side = static_cast<uint32_t>(2 * kPatternRadius + 1);
-    while (true) {
-      const int x = static_cast<int>(generator() % side) - kPatternRadius;
-      const int y = static_cast<int>(generator() % side) - kPatternRadius;
-      if (x * x + y * y <= kPatternRadius * kPatternRadius) {
-        return std::array<int8_t, 2>{static_cast<int8_t>(x), static_cast<int8_t>(y)};
-      }
-    }
-  };
+// Drawn at random, at most 14 pixels long: the best of 60 draws on two synthetic surveys, a turbid
+// one with caustics and snow and a clear one at two steps' distance. Low-contrast ground needs the
+// wide disc; short tests survive relief and uneven light better than long ones.
+constexpr std::array<RBriefTest, 8> kBaseTests = {{{{-2, 25}, {-11, 15}},
+                                                   {{20, -20}, {22, -18}},
+                                                   {{11, -29}, {20, -24}},
+                                                   {{-4, -11}, {-2, -13}},
+                                                   {{10, -27}, {7, -26}},
+                                                   {{-2, -16}, {-3, -17}},
+                                                   {{-5, 3}, {-5, 2}},
+                                                   {{-7, 16}, {-19, 21}}}};
+
+std::array<int8_t, 2> Turn(const std::array<int8_t, 2>& point, int steps) {
+  const double c = std::cos(steps * kTurnStep), s = std::sin(steps * kTurnStep);
+  return {static_cast<int8_t>(std::lround(c * point[0] - s * point[1])),
+          static_cast<int8_t>(std::lround(s * point[0] + c * point[1]))};
+}
+
+std::array<RBriefTest, 256> MakePattern() {
   std::array<RBriefTest, 256> pattern{};
-  for (RBriefTest& test : pattern) {
-    int squared_length = 0;
-    do {
-      test.first = draw_point();
-      test.second = draw_point();
-      const int dx = test.first[0] - test.second[0], dy = test.first[1] - test.second[1];
-      squared_length = dx * dx + dy * dy;
-    } while (squared_length == 0 || squared_length > kMaxTestLength * kMaxTestLength);
+  for (size_t bit = 0; bit < pattern.size(); ++bit) {
+    const RBriefTest& base = kBaseTests[bit / kNumTurns];
+    const int steps = static_cast<int>(bit % kNumTurns);
+    pattern[bit] = {Turn(base.first, steps), Turn(base.second, steps)};
   }
   return pattern;
 }
@@ -34,7 +37,7 @@ std::array<RBriefTest, 256> DrawPattern() {
 }  // namespace
 
 const std::array<RBriefTest, 256>& RBriefPattern() {
-  static const std::array<RBriefTest, 256> pattern = DrawPattern();
+  static const std::array<RBriefTest, 256> pattern = MakePattern();
   return pattern;
 }
 

@@ -1,7 +1,6 @@
-// The 256 tests of rBRIEF (ours: drawn here instead of ORB's learned table). Both points lie in a
-// disc, at most kMaxTestLength apart. Measured on real underwater strips against Gaussian patterns
-// and shorter discs: low-contrast ground needs the wide disc, and short tests survive relief and
-// uneven light better than long ones.
+// The 256 tests of rBRIEF (ours: in place of ORB's learned table): 8 tests, each in 32 turns of
+// 11.25 degrees about the SeaPoint. So turning the picture by one step moves every bit of a 32-bit
+// word to the next place: a descriptor is turned without looking at the picture again.
 #pragma once
 
 #include <array>
@@ -9,15 +8,16 @@
 
 namespace colmap_seapoint {
 
-inline constexpr int kPatternRadius = 26;  // pixels
-inline constexpr int kMaxTestLength = 16;  // pixels
+inline constexpr int kPatternRadius = 32;  // pixels: of the disc that holds all tests
+inline constexpr int kNumTurns = 32;       // steps of a full turn
+inline constexpr double kTurnStep = 6.283185307179586 / kNumTurns;  // radians, from x towards y
 
 struct RBriefTest {
-  std::array<int8_t, 2> first;  // x, y from the SeaPoint, orientation 0
+  std::array<int8_t, 2> first;  // x, y from the SeaPoint
   std::array<int8_t, 2> second;
 };
 
-// The same table on every platform (std::mt19937 is specified to the bit).
+// Test 32 w + k is test 32 w turned by k steps (to the nearest pixel).
 const std::array<RBriefTest, 256>& RBriefPattern();
 
 }  // namespace colmap_seapoint
