@@ -60,16 +60,17 @@ ExtractedFeatures ExtractFeatures(const GrayImage& picture, const GrayImage& mas
     const double scale = std::pow(kLevelScale, level);
     const int width = static_cast<int>(std::lround(picture.width / scale));
     const int height = static_cast<int>(std::lround(picture.height / scale));
-    if (std::min(width, height) <= 2 * kRBriefBorder) break;
     const GrayImage level_picture = level == 0 ? GrayImage() : Resize(picture, width, height);
     const GrayImage level_mask =
         level == 0 || mask.Empty() ? GrayImage() : Resize(mask, width, height);
     const GrayImage& grey = level == 0 ? picture : level_picture;
+    const int border = kRBriefBorder * DescriptionReduction(grey);
+    if (std::min(width, height) <= 2 * border) break;
 
     DetectionSummary summary;
     std::vector<SeaPoint> points =
         DetectSeaPoints(grey, level == 0 ? mask : level_mask, LevelOptions(options, level),
-                        kRBriefBorder, &summary);
+                        border, &summary);
     const std::vector<Descriptor> descriptors = DescribeSeaPoints(grey, &points);
     Append(points, descriptors, static_cast<double>(picture.width) / width,
            static_cast<double>(picture.height) / height, &result.features);

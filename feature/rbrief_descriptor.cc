@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <opencv2/imgproc.hpp>
+#include <cstddef>
 
+#include "colmap_seapoint/base/vector_clones.h"
 #include "feature/local_contrast.h"
 #include "feature/rbrief_pattern.h"
 
@@ -26,12 +26,12 @@ std::vector<int> DiscHalfWidths() {
   return half_widths;
 }
 
-float CentroidOrientation(const GrayImage& picture, int x, int y,
+float CentroidOrientation(const Image<int16_t>& contrast, int x, int y,
                           const std::vector<int>& half_widths) {
   int moment_x = 0, moment_y = 0;
   for (int v = -kCentroidRadius; v <= kCentroidRadius; ++v) {
     const int half_width = half_widths[static_cast<size_t>(std::abs(v))];
-    const uint8_t* row = picture.Row(y + v) + x;
+    const int16_t* row = contrast.Row(y + v) + x;
     int row_sum = 0;
     for (int u = -half_width; u <= half_width; ++u) {
       moment_x += u * row[u];
@@ -42,60 +42,126 @@ float CentroidOrientation(const GrayImage& picture, int x, int y,
   return std::atan2(static_cast<float>(moment_y), static_cast<float>(moment_x));
 }
 
-// Where the pattern's pixels lie in memory around a point, first and second of every test.
-std::array<std::ptrdiff_t, 512> PatternOffsets(size_t stride) {
-  std::array<std::ptrdiff_t, 512> offsets{};
-  for (size_t bit = 0; bit < 256; ++bit) {
-    const RBriefTest& test = RBriefPattern()[bit];
-    const auto row = static_cast<std::ptrdiff_t>(stride);
-    offsets[2 * bit] = test.first[1] * row + test.first[0];
-    offsets[2 * bit + 1] = test.second[1] * row + test.second[0];
-  }
-  return offsets;
+SEAPOINT_VECTOR_CLONES
+void AddRow(const uint8_t* row, size_t width, uint32_t* sums) {
+  for (size_t x = 0; x < width; ++x) sums[x] += row[x];
 }
 
-// `sample(i)`: the i-th of the pattern's 512 pixels.
-template <typename Sample>
-Descriptor Compare(const Sample& sample) {
-  Descriptor descriptor{};
-  for (size_t byte = 0; byte < descriptor.size(); ++byte) {
-    unsigned bits = 0;
-    for (size_t bit = 0; bit < 8; ++bit) {
-      const size_t test = 8 * byte + bit;
-      bits |= static_cast<unsigned>(sample(2 * test) < sample(2 * test + 1)) << bit;
+void AddRows(const GrayImage& picture, int y, int count, size_t width, uint32_t* sums) {
+  std::fill(sums, sums + width, 0u);
+  for (int v = y; v < y + count; ++v) AddRow(picture.Row(v), width, sums);
+}
+
+// The mean of every reduction x reduction pixels; what is left over at the right and lower edge is
+// dropped.
+GrayImage Reduce(const GrayImage& picture, int reduction) {
+  GrayImage reduced(picture.width / reduction, picture.height / reduction);
+  std::vector<uint32_t> sums(static_cast<size_t>(reduced.width * reduction));
+  const auto count = static_cast<uint32_t>(reduction * reduction);
+  for (int y = 0; y < reduced.height; ++y) {
+    AddRows(picture, y * reduction, reduction, sums.size(), sums.data());
+    uint8_t* out = reduced.Row(y);
+    for (size_t x = 0; x < static_cast<size_t>(reduced.width); ++x) {
+      uint32_t sum = count / 2;
+      for (size_t i = 0; i < static_cast<size_t>(reduction); ++i) {
+        sum += sums[x * static_cast<size_t>(reduction) + i];
+      }
+      out[x] = static_cast<uint8_t>(sum / count);
     }
-    descriptor[byte] = static_cast<uint8_t>(bits);
   }
-  return descriptor;
+  return reduced;
 }
 
-Descriptor DescribeNearEdge(const Image<int16_t>& contrast, int x, int y) {
-  return Compare([&](size_t i) {
-    const RBriefTest& test = RBriefPattern()[i / 2];
-    const auto& offset = i % 2 == 0 ? test.first : test.second;
-    return contrast.At(std::clamp(x + offset[0], 0, contrast.width - 1),
-                       std::clamp(y + offset[1], 0, contrast.height - 1));
-  });
-}
+// One of the two scales: its local contrast and where its tests' pixels lie around a point.
+class TestScale {
+ public:
+  TestScale(const GrayImage& picture, int reduction, size_t first_test)
+      : reduction_(static_cast<float>(reduction)), first_test_(first_test),
+        contrast_(LocalContrast(picture)) {
+    const auto row = static_cast<std::ptrdiff_t>(contrast_.Stride());
+    for (size_t i = 0; i < offsets_.size(); ++i) {
+      const std::array<int8_t, 2>& offset = Offset(i);
+      offsets_[i] = offset[1] * row + offset[0];
+    }
+  }
+
+  const Image<int16_t>& Contrast() const { return contrast_; }
+  // The point's pixel at this scale.
+  int X(const SeaPoint& point) const { return Pixel(point.x, contrast_.width); }
+  int Y(const SeaPoint& point) const { return Pixel(point.y, contrast_.height); }
+
+  // 16 bytes of the descriptor.
+  void Describe(const SeaPoint& point, uint8_t* bytes) const {
+    const int x = X(point), y = Y(point);
+    const int16_t* center = contrast_.Row(y) + x;
+    if (x >= kPatternRadius && y >= kPatternRadius && x + kPatternRadius < contrast_.width &&
+        y + kPatternRadius < contrast_.height) {
+      Compare([&](size_t i) { return center[offsets_[i]]; }, bytes);
+    } else {
+      Compare(
+          [&](size_t i) {
+            const std::array<int8_t, 2>& offset = Offset(i);
+            return contrast_.At(std::clamp(x + offset[0], 0, contrast_.width - 1),
+                                std::clamp(y + offset[1], 0, contrast_.height - 1));
+          },
+          bytes);
+    }
+  }
+
+ private:
+  static constexpr size_t kNumTests = kFirstCoarseTest;
+
+  const std::array<int8_t, 2>& Offset(size_t i) const {
+    const RBriefTest& test = RBriefPattern()[first_test_ + i / 2];
+    return i % 2 == 0 ? test.first : test.second;
+  }
+  int Pixel(float coordinate, int size) const {
+    return std::min(static_cast<int>(coordinate / reduction_), size - 1);
+  }
+  // `sample(2 t)` and `sample(2 t + 1)`: what test t compares.
+  template <typename Sample>
+  static void Compare(const Sample& sample, uint8_t* bytes) {
+    for (size_t byte = 0; byte < kNumTests / 8; ++byte) {
+      unsigned bits = 0;
+      for (size_t bit = 0; bit < 8; ++bit) {
+        const size_t test = 8 * byte + bit;
+        bits |= static_cast<unsigned>(sample(2 * test) < sample(2 * test + 1)) << bit;
+      }
+      bytes[byte] = static_cast<uint8_t>(bits);
+    }
+  }
+
+  const float reduction_;
+  const size_t first_test_;
+  const Image<int16_t> contrast_;
+  std::array<std::ptrdiff_t, 2 * kNumTests> offsets_{};
+};
 
 }  // namespace
 
+int DescriptionReduction(const GrayImage& picture) {
+  constexpr int64_t kMaxArea = 4000000;
+  int reduction = 1;
+  while (int64_t{picture.width} * picture.height / reduction / reduction > kMaxArea) reduction *= 2;
+  return reduction;
+}
+
 std::vector<Descriptor> DescribeSeaPoints(const GrayImage& picture, std::vector<SeaPoint>* points) {
-  std::vector<Descriptor> descriptors;
-  if (points->empty()) return descriptors;
-  const Image<int16_t> contrast = LocalContrast(picture);
+  if (points->empty()) return {};
+  const int reduction = DescriptionReduction(picture);
+  const GrayImage reduced = reduction == 1 ? GrayImage() : Reduce(picture, reduction);
+  const GrayImage& described = reduction == 1 ? picture : reduced;
+  const TestScale fine(described, reduction, 0);
+  const TestScale coarse(Reduce(described, 2), 2 * reduction, kFirstCoarseTest);
+
   const std::vector<int> half_widths = DiscHalfWidths();
-  const std::array<std::ptrdiff_t, 512> offsets = PatternOffsets(contrast.Stride());
-  descriptors.reserve(points->size());
-  for (SeaPoint& point : *points) {
-    const int x = static_cast<int>(point.x), y = static_cast<int>(point.y);
-    point.orientation = CentroidOrientation(picture, x, y, half_widths);
-    const bool is_inside = x >= kPatternRadius && y >= kPatternRadius &&
-                           x + kPatternRadius < contrast.width &&
-                           y + kPatternRadius < contrast.height;
-    const int16_t* center = contrast.Row(y) + x;
-    descriptors.push_back(is_inside ? Compare([&](size_t i) { return center[offsets[i]]; })
-                                    : DescribeNearEdge(contrast, x, y));
+  std::vector<Descriptor> descriptors(points->size());
+  for (size_t i = 0; i < points->size(); ++i) {
+    SeaPoint& point = (*points)[i];
+    point.orientation =
+        CentroidOrientation(fine.Contrast(), fine.X(point), fine.Y(point), half_widths);
+    fine.Describe(point, descriptors[i].data());
+    coarse.Describe(point, descriptors[i].data() + kFirstCoarseTest / 8);
   }
   return descriptors;
 }
