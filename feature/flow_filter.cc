@@ -3,31 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <nanoflann.hpp>
+
+#include "feature/local_flow.h"
 
 namespace colmap_seapoint {
 
 namespace {
-
-// The matches' positions in the first picture, as nanoflann wants them.
-struct MatchPositions {
-  const std::vector<SeaPoint>& points;
-  const FeatureMatches& matches;
-
-  size_t kdtree_get_point_count() const { return matches.size(); }
-  float kdtree_get_pt(size_t i, size_t dim) const {
-    const SeaPoint& point = points[matches[i].idx1];
-    return dim == 0 ? point.x : point.y;
-  }
-  template <typename BoundingBox>
-  bool kdtree_get_bbox(BoundingBox&) const {
-    return false;
-  }
-};
-
-using MatchTree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, MatchPositions>,
-                                        MatchPositions, 2>;
 
 bool Agree(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const FlowFilterOptions& options,
            float min_cos) {
@@ -76,36 +57,61 @@ void FlowFilterOptions::Bind(OptionTable* table) {
              "largest difference of direction that still votes, degrees", "ours", 0, 180);
   table->Add(group + "flow_max_norm_difference", &max_norm_difference,
              "largest difference of norm that still votes, share of the larger norm", "ours", 0, 1);
+  table->Add(group + "flow_max_slip", &max_slip,
+             "largest deviation of a match from the flow around it, pixels", "ours", 0, 1000);
+  table->Add(group + "flow_max_slip_ratio", &max_slip_ratio,
+             "or, if that is more, times the median deviation of the matches around it", "ours", 0,
+             1000);
   table->Add(group + "flow_min_tolerance", &min_tolerance,
              "vectors nearer to each other than this always vote, pixels", "ours", 0, 1000);
 }
+
+namespace {
+
+// Paper 2.4, Figure 8.
+FeatureMatches KeepVoted(const std::vector<SeaPoint>& points1, const std::vector<SeaPoint>& points2,
+                         const FeatureMatches& matches, double turn,
+                         const FlowFilterOptions& options) {
+  const std::vector<Eigen::Vector2f> vectors = FlowVectors(points1, points2, matches, turn);
+  LocalFlow flow(points1, points2, matches);
+  const float min_cos = static_cast<float>(std::cos(options.max_angle_deg * M_PI / 180));
+  const size_t num_queried = static_cast<size_t>(options.num_neighbors) + 1;  // itself is one
+  FeatureMatches kept;
+  for (uint32_t i = 0; i < matches.size(); ++i) {
+    int votes = 0;
+    for (const uint32_t neighbor : flow.Nearest(points1[matches[i].idx1], num_queried)) {
+      if (neighbor != i && Agree(vectors[i], vectors[neighbor], options, min_cos)) ++votes;
+    }
+    if (votes >= options.min_votes) kept.push_back(matches[i]);
+  }
+  return kept;
+}
+
+// Ours.
+FeatureMatches DropSlipped(const std::vector<SeaPoint>& points1,
+                           const std::vector<SeaPoint>& points2, const FeatureMatches& matches,
+                           const FlowFilterOptions& options) {
+  if (matches.size() <= LocalFlow::kNumNeighbors) return matches;
+  LocalFlow flow(points1, points2, matches);
+  const std::vector<double> slips = flow.Slips();
+  FeatureMatches kept;
+  for (uint32_t i = 0; i < matches.size(); ++i) {
+    const double usual = flow.UsualSlip(points1[matches[i].idx1], slips, i);
+    if (slips[i] <= std::max(options.max_slip, options.max_slip_ratio * usual)) {
+      kept.push_back(matches[i]);
+    }
+  }
+  return kept;
+}
+
+}  // namespace
 
 FeatureMatches FilterFlow(const std::vector<SeaPoint>& points1,
                           const std::vector<SeaPoint>& points2, const FeatureMatches& matches,
                           double turn, const FlowFilterOptions& options) {
   if (matches.empty()) return {};
-  const std::vector<Eigen::Vector2f> vectors = FlowVectors(points1, points2, matches, turn);
-
-  const MatchPositions positions{points1, matches};
-  MatchTree tree(2, positions, nanoflann::KDTreeSingleIndexAdaptorParams(16));
-  tree.buildIndex();
-  const float min_cos = static_cast<float>(std::cos(options.max_angle_deg * M_PI / 180));
-  const size_t num_queried = static_cast<size_t>(options.num_neighbors) + 1;  // itself is one
-  std::vector<uint32_t> neighbors(num_queried);
-  std::vector<float> squared_distances(num_queried);
-
-  FeatureMatches kept;
-  for (size_t i = 0; i < matches.size(); ++i) {
-    const float query[2] = {positions.kdtree_get_pt(i, 0), positions.kdtree_get_pt(i, 1)};
-    const size_t num_found =
-        tree.knnSearch(query, num_queried, neighbors.data(), squared_distances.data());
-    int votes = 0;
-    for (size_t n = 0; n < num_found; ++n) {
-      if (neighbors[n] != i && Agree(vectors[i], vectors[neighbors[n]], options, min_cos)) ++votes;
-    }
-    if (votes >= options.min_votes) kept.push_back(matches[i]);
-  }
-  return kept;
+  return DropSlipped(points1, points2, KeepVoted(points1, points2, matches, turn, options),
+                     options);
 }
 
 }  // namespace colmap_seapoint

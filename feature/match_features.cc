@@ -1,5 +1,8 @@
 #include "feature/match_features.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "feature/picture_turn.h"
 #include "feature/rbrief_descriptor.h"
 #include "feature/rbrief_pattern.h"
@@ -9,23 +12,55 @@ namespace colmap_seapoint {
 void SeaPointMatchingOptions::Bind(OptionTable* table) {
   hamming.Bind(table);
   flow.Bind(table);
+  guided.Bind(table);
   verification.Bind(table);
 }
 
+namespace {
+
+// Picture 1 as picture 2 would see it, as far as descriptors go.
+struct TurnedFeatures {
+  Features features;
+  double turn = 0;  // radians, from x towards y
+};
+
+TurnedFeatures TurnTowards(const Features& features1, const Features& features2) {
+  const int steps = FindPictureTurn(features1, features2);
+  return {{features1.points, TurnDescriptors(features1.descriptors, steps)}, steps * kTurnStep};
+}
+
+FeatureMatches Consolidate(const TurnedFeatures& turned1, const Features& features2,
+                           const SeaPointMatchingOptions& options) {
+  const FeatureMatches nearest =
+      MatchHamming(turned1.features.descriptors, features2.descriptors, options.hamming);
+  return FilterFlow(turned1.features.points, features2.points, nearest, turned1.turn, options.flow);
+}
+
+void Insert(const FeatureMatches& added, FeatureMatches* matches) {
+  const auto by_idx1 = [](const FeatureMatch& a, const FeatureMatch& b) { return a.idx1 < b.idx1; };
+  FeatureMatches all(matches->size() + added.size());
+  std::merge(matches->begin(), matches->end(), added.begin(), added.end(), all.begin(), by_idx1);
+  *matches = std::move(all);
+}
+
+}  // namespace
+
 FeatureMatches MatchSeaPoints(const Features& features1, const Features& features2,
                               const SeaPointMatchingOptions& options) {
-  const int turn = FindPictureTurn(features1, features2);
-  const FeatureMatches nearest = MatchHamming(TurnDescriptors(features1.descriptors, turn),
-                                              features2.descriptors, options.hamming);
-  return FilterFlow(features1.points, features2.points, nearest, turn * kTurnStep, options.flow);
+  return Consolidate(TurnTowards(features1, features2), features2, options);
 }
 
 MatchedPair MatchFeatures(const Camera& camera1, const Features& features1, const Camera& camera2,
                           const Features& features2, const SeaPointMatchingOptions& options) {
+  const TurnedFeatures turned1 = TurnTowards(features1, features2);
   MatchedPair pair;
-  pair.matches = MatchSeaPoints(features1, features2, options);
+  pair.matches = Consolidate(turned1, features2, options);
   pair.geometry = VerifyTwoViews(camera1, features1.points, camera2, features2.points, pair.matches,
                                  options.verification);
+  const FeatureMatches guided = MatchGuided(camera1, turned1.features, camera2, features2,
+                                            pair.matches, pair.geometry, options.guided);
+  Insert(guided, &pair.matches);
+  Insert(guided, &pair.geometry.inliers);
   return pair;
 }
 

@@ -1,5 +1,6 @@
-// The spine of matching (paper 2.4, Figure 8): Hamming matches, one-to-one -> flow filter ->
-// two-view geometry.
+// The spine of matching (paper 2.4, Figure 8): how far the pictures are turned against each other
+// (ours) -> Hamming matches, one-to-one -> flow filter -> two-view geometry -> guided
+// matches (ours).
 #pragma once
 
 #include <string>
@@ -8,6 +9,7 @@
 #include "colmap_seapoint/base/features.h"
 #include "colmap_seapoint/base/options.h"
 #include "feature/flow_filter.h"
+#include "feature/guided_matcher.h"
 #include "feature/hamming_matcher.h"
 #include "feature/two_view_verification.h"
 
@@ -16,13 +18,14 @@ namespace colmap_seapoint {
 struct SeaPointMatchingOptions {
   HammingMatcherOptions hamming;
   FlowFilterOptions flow;
+  GuidedMatcherOptions guided;
   TwoViewVerificationOptions verification;
 
   void Bind(OptionTable* table);
 };
 
 struct MatchedPair {
-  FeatureMatches matches;  // one-to-one, flow-filtered: what goes into COLMAP's `matches`
+  FeatureMatches matches;  // one-to-one, flow-filtered and guided: COLMAP's `matches`
   TwoViewGeometry geometry;
 };
 

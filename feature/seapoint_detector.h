@@ -18,7 +18,7 @@ struct SeaPointExtractionOptions {
   int min_num_features = 2500;
   int max_num_features = 3000;
   int num_levels = 1;
-  double smoothing_sigma = 2.5;
+  double smoothing_sigma = 1.5;
   int window_size = 7;
   double harris_k = 0.04;
   int nms_radius = 0;

@@ -73,7 +73,7 @@ class OpenCVDetector : public FeatureDetector {
       matches.push_back(
           {static_cast<uint32_t>(match.queryIdx), static_cast<uint32_t>(match.trainIdx)});
     }
-    return FilterFlow(features1.Points(), features2.Points(), matches, FlowFilterOptions());
+    return FilterFlow(features1.Points(), features2.Points(), matches, 0, FlowFilterOptions());
   }
 
  private:

@@ -84,22 +84,25 @@ Flow Similarity(double angle_deg, double scale, double dx, double dy) {
 TEST(FlowFilterTest, FindsPlantedOutliers) {
   struct Case {
     const char* name;
+    double turn_deg;  // as picture_turn.h finds it: the nearest of 32 steps
     Flow flow;
     std::array<double, 3> min_recall, min_precision;
   };
   const std::vector<Case> cases = {
-      {"along the track", Translation(260, 20), {1, 0.99, 0.93}, {1, 0.99, 0.97}},
-      {"short step", Translation(12, -3), {1, 0.99, 0.93}, {1, 0.99, 0.97}},
-      {"climbing", Similarity(0, 1.15, 90, 0), {0.94, 0.91, 0.80}, {1, 0.99, 0.97}},
-      {"yaw in a turn", Similarity(25, 1, 60, -40), {0.91, 0.88, 0.74}, {1, 0.98, 0.96}},
+      {"along the track", 0, Translation(260, 20), {1, 0.99, 0.93}, {1, 0.99, 0.97}},
+      {"short step", 0, Translation(12, -3), {1, 0.99, 0.93}, {1, 0.99, 0.97}},
+      {"climbing", 0, Similarity(0, 1.15, 90, 0), {0.94, 0.91, 0.80}, {1, 0.99, 0.97}},
+      {"yaw in a turn", 22.5, Similarity(25, 1, 60, -40), {0.91, 0.88, 0.74}, {1, 0.98, 0.96}},
       {"the next strip, turned round",
+       180,
        Similarity(180, 1, 30, 250),
        {0.89, 0.87, 0.76},
        {1, 0.95, 0.91}}};
   const std::array<double, 3> outlier_shares = {0, 0.3, 0.6};
   for (const Case& one : cases) {
     for (size_t i = 0; i < outlier_shares.size(); ++i) {
-      const Quality quality = Filter(MakeScene(one.flow, 1500, outlier_shares[i], 3));
+      const Scene scene = MakeScene(one.flow, 1500, outlier_shares[i], 3);
+      const Quality quality = Filter(scene, one.turn_deg * M_PI / 180);
       EXPECT_GE(quality.recall, one.min_recall[i]) << one.name << " " << outlier_shares[i];
       EXPECT_GE(quality.precision, one.min_precision[i]) << one.name << " " << outlier_shares[i];
     }
@@ -113,7 +116,7 @@ TEST(FlowFilterTest, KnownTurnMakesTurnedStripsEven) {
     for (const double error_deg : {0.0, 5.0}) {
       const Scene scene = MakeScene(Similarity(angle_deg, 1, 30, 250), 1500, 0.6, 3);
       const Quality known = Filter(scene, (angle_deg + error_deg) * M_PI / 180);
-      EXPECT_GE(known.recall, error_deg == 0 ? 0.93 : 0.91) << angle_deg << " " << error_deg;
+      EXPECT_GE(known.recall, 0.92) << angle_deg << " " << error_deg;
       EXPECT_GE(known.precision, 0.96) << angle_deg << " " << error_deg;
     }
   }
@@ -136,6 +139,33 @@ TEST(FlowFilterTest, DirectionAloneAndNormAloneAreEnoughToFail) {
   for (const FeatureMatch& match : kept) {
     EXPECT_TRUE(match.idx1 != 10 && match.idx1 != 20 && match.idx1 != 30);
   }
+}
+
+// A match that ends on a corner beside the right one agrees with its neighbours in direction and
+// norm; what gives it away is how even the flow around it is otherwise.
+TEST(FlowFilterTest, DropsMatchesThatSlipped) {
+  Scene scene = MakeScene(Similarity(3, 1.02, 250, 20), 1500, 0, 9);
+  for (size_t i = 0; i < scene.matches.size(); i += 20) {
+    scene.points2[scene.matches[i].idx2].x += i % 40 == 0 ? 5.0f : -3.0f;
+    scene.points2[scene.matches[i].idx2].y += 4.0f;
+    scene.is_outlier[i] = true;
+  }
+  const Quality quality = Filter(scene);
+  EXPECT_GE(quality.recall, 0.98);
+  EXPECT_GE(quality.precision, 0.995);
+  FlowFilterOptions votes_only;
+  votes_only.max_slip = 1000;
+  EXPECT_LT(Filter(scene, 0, votes_only).precision, 0.96);
+}
+
+// Relief moves neighbours differently by many pixels: that is usual there, and stays.
+TEST(FlowFilterTest, ReliefIsNoSlip) {
+  const Flow rough = [](double x, double y) {
+    const double height = std::sin(x / 15) * std::cos(y / 12);
+    return std::array<double, 2>{x + 250 + 12 * height, y + 20};
+  };
+  const Quality quality = Filter(MakeScene(rough, 1500, 0, 10));
+  EXPECT_GE(quality.recall, 0.93);
 }
 
 // The limits themselves: three neighbours, three votes needed.
