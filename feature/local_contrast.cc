@@ -1,7 +1,6 @@
 #include "feature/local_contrast.h"
 
 #include <algorithm>
-#include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "colmap_seapoint/base/vector_clones.h"
@@ -10,14 +9,34 @@ namespace colmap_seapoint {
 
 namespace {
 
-// In 1/16 grey levels.
-Image<uint16_t> Smooth(const GrayImage& picture) {
-  Image<uint16_t> smooth(picture.width, picture.height);
-  std::transform(picture.data.begin(), picture.data.end(), smooth.data.begin(),
-                 [](uint8_t level) { return static_cast<uint16_t>(16 * level); });
-  cv::Mat levels(smooth.height, smooth.width, CV_16U, smooth.data.data());
-  cv::GaussianBlur(levels, levels, cv::Size(13, 13), kContrastSigma, 0, cv::BORDER_REPLICATE);
-  return smooth;
+constexpr int kRadius = 6;  // of the smoothing: three boxes of 5 after each other
+constexpr size_t kNumTaps = 2 * kRadius + 1;
+
+// Three boxes of 5 at once: at most 125 * 255.
+SEAPOINT_VECTOR_CLONES
+void SmoothDown(const uint8_t* const* r, int width, uint16_t* out) {
+  for (int x = 0; x < width; ++x) {
+    auto pair = [&](int t) { return static_cast<uint16_t>(r[t][x] + r[12 - t][x]); };
+    const auto ends = static_cast<uint16_t>(pair(0) + 3 * pair(1));
+    const auto sides = static_cast<uint16_t>(6 * pair(2) + 10 * pair(3));
+    const auto middle = static_cast<uint16_t>(15 * pair(4) + 18 * pair(5) + 19 * r[6][x]);
+    out[x] = static_cast<uint16_t>(ends + sides + middle);
+  }
+}
+
+// One box of 5: out[x] of in[x .. x + 4]. Shifted before, so that no sum exceeds 16 bits.
+SEAPOINT_VECTOR_CLONES
+void BoxAcross(const uint16_t* in, int width, uint16_t* out) {
+  for (int x = 0; x < width; ++x) {
+    const unsigned sum = (in[x] >> 2) + (in[x + 1] >> 2) + (in[x + 2] >> 2) + (in[x + 3] >> 2) +
+                         (in[x + 4] >> 2);
+    out[x] = static_cast<uint16_t>(sum);
+  }
+}
+
+SEAPOINT_VECTOR_CLONES
+void ShiftRow(const uint16_t* in, int width, uint16_t* out) {
+  for (int x = 0; x < width; ++x) out[x] = static_cast<uint16_t>((in[x] + 8u) >> 4);
 }
 
 SEAPOINT_VECTOR_CLONES
@@ -25,27 +44,60 @@ void SlideDown(const uint16_t* entering, const uint16_t* leaving, int width, uin
   for (int x = 0; x < width; ++x) sums[x] += static_cast<uint32_t>(entering[x] - leaving[x]);
 }
 
+SEAPOINT_VECTOR_CLONES
+void MeanOfPairs(const uint8_t* above, const uint8_t* below, int width, uint8_t* out) {
+  for (int x = 0; x < width; ++x) {
+    const unsigned sum = above[2 * x] + above[2 * x + 1] + below[2 * x] + below[2 * x + 1];
+    out[x] = static_cast<uint8_t>((sum + 2) >> 2);
+  }
+}
+
+Image<uint16_t> Smooth(const GrayImage& picture) {
+  Image<uint16_t> smooth(picture.width, picture.height);
+  const auto width = static_cast<size_t>(picture.width);
+  std::vector<uint16_t> row(width + 2 * kRadius), box(row.size());
+  for (int y = 0; y < picture.height; ++y) {
+    const uint8_t* rows[kNumTaps];
+    for (int t = 0; t < static_cast<int>(kNumTaps); ++t) {
+      rows[t] = picture.Row(std::clamp(y + t - kRadius, 0, picture.height - 1));
+    }
+    SmoothDown(rows, picture.width, row.data() + kRadius);
+    std::fill_n(row.begin(), kRadius, row[kRadius]);
+    std::fill_n(row.end() - kRadius, kRadius, row[width + kRadius - 1]);
+    BoxAcross(row.data(), picture.width + 8, box.data());
+    BoxAcross(box.data(), picture.width + 4, row.data());
+    BoxAcross(row.data(), picture.width, box.data());
+    ShiftRow(box.data(), picture.width, smooth.Row(y));
+  }
+  return smooth;
+}
+
 // The window of `length` places that lies within 0..size-1 and nearest to `center`: its first place.
 int WindowBegin(int center, int length, int size) {
   return std::clamp(center - length / 2, 0, size - length);
 }
 
-// One row: contrast = level - mean of the box, the column sums being those of the box's rows.
-void SubtractMean(const uint16_t* smooth, const std::vector<uint32_t>& column_sums, int length,
-                  uint32_t box_size, int16_t* out) {
+// Sums of the box around every place of a row, the column sums being those of the box's rows: at most
+// 61 * 61 * 3891, which a float holds exactly.
+void BoxSums(const std::vector<uint32_t>& column_sums, int length, uint32_t* sums) {
   const int width = static_cast<int>(column_sums.size());
-  uint64_t sum = 0;
+  const int first_move = length / 2 + 1, num_moves = width - length;
+  uint32_t sum = 0;
   for (int x = 0; x < length; ++x) sum += column_sums[static_cast<size_t>(x)];
-  // mean = sum / box_size, as a product: exact to 1 in 2^20 of a level.
-  const uint64_t inverse = ((uint64_t{1} << 32) + box_size / 2) / box_size;
-  for (int x = 0, begin = 0; x < width; ++x) {
-    if (begin != WindowBegin(x, length, width)) {
-      sum += column_sums[static_cast<size_t>(begin + length)];
-      sum -= column_sums[static_cast<size_t>(begin)];
-      ++begin;
-    }
-    const int mean = static_cast<int>((sum * inverse + (uint64_t{1} << 31)) >> 32);
-    out[x] = static_cast<int16_t>(smooth[x] - mean);
+  std::fill(sums, sums + std::min(first_move, width), sum);
+  for (int move = 0; move < num_moves; ++move) {
+    sum += column_sums[static_cast<size_t>(move + length)] - column_sums[static_cast<size_t>(move)];
+    sums[first_move + move] = sum;
+  }
+  std::fill(sums + std::min(first_move + num_moves, width), sums + width, sum);
+}
+
+SEAPOINT_VECTOR_CLONES
+void SubtractMean(const uint16_t* smooth, const uint32_t* sums, int width, float inverse_size,
+                  int16_t* out) {
+  for (int x = 0; x < width; ++x) {
+    const float mean = static_cast<float>(static_cast<int32_t>(sums[x])) * inverse_size + 0.5f;
+    out[x] = static_cast<int16_t>(smooth[x] - static_cast<int32_t>(mean));
   }
 }
 
@@ -57,9 +109,10 @@ Image<int16_t> LocalContrast(const GrayImage& picture) {
   const Image<uint16_t> smooth = Smooth(picture);
   const int length_x = std::min(2 * kContrastBoxRadius + 1, picture.width);
   const int length_y = std::min(2 * kContrastBoxRadius + 1, picture.height);
-  const auto box_size = static_cast<uint32_t>(length_x * length_y);
+  const float inverse_size = 1.0f / static_cast<float>(length_x * length_y);
   const std::vector<uint16_t> nothing(static_cast<size_t>(picture.width), 0);
   std::vector<uint32_t> column_sums(static_cast<size_t>(picture.width), 0);
+  std::vector<uint32_t> sums(column_sums.size());
   for (int y = 0; y < length_y; ++y) {
     SlideDown(smooth.Row(y), nothing.data(), picture.width, column_sums.data());
   }
@@ -69,9 +122,18 @@ Image<int16_t> LocalContrast(const GrayImage& picture) {
                 column_sums.data());
       ++begin;
     }
-    SubtractMean(smooth.Row(y), column_sums, length_x, box_size, contrast.Row(y));
+    BoxSums(column_sums, length_x, sums.data());
+    SubtractMean(smooth.Row(y), sums.data(), picture.width, inverse_size, contrast.Row(y));
   }
   return contrast;
+}
+
+GrayImage HalfSize(const GrayImage& picture) {
+  GrayImage half(picture.width / 2, picture.height / 2);
+  for (int y = 0; y < half.height; ++y) {
+    MeanOfPairs(picture.Row(2 * y), picture.Row(2 * y + 1), half.width, half.Row(y));
+  }
+  return half;
 }
 
 }  // namespace colmap_seapoint

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "colmap_seapoint/base/vector_clones.h"
 #include "feature/local_contrast.h"
 #include "feature/rbrief_pattern.h"
 
@@ -40,36 +39,6 @@ float CentroidOrientation(const Image<int16_t>& contrast, int x, int y,
     moment_y += v * row_sum;
   }
   return std::atan2(static_cast<float>(moment_y), static_cast<float>(moment_x));
-}
-
-SEAPOINT_VECTOR_CLONES
-void AddRow(const uint8_t* row, size_t width, uint32_t* sums) {
-  for (size_t x = 0; x < width; ++x) sums[x] += row[x];
-}
-
-void AddRows(const GrayImage& picture, int y, int count, size_t width, uint32_t* sums) {
-  std::fill(sums, sums + width, 0u);
-  for (int v = y; v < y + count; ++v) AddRow(picture.Row(v), width, sums);
-}
-
-// The mean of every reduction x reduction pixels; what is left over at the right and lower edge is
-// dropped.
-GrayImage Reduce(const GrayImage& picture, int reduction) {
-  GrayImage reduced(picture.width / reduction, picture.height / reduction);
-  std::vector<uint32_t> sums(static_cast<size_t>(reduced.width * reduction));
-  const auto count = static_cast<uint32_t>(reduction * reduction);
-  for (int y = 0; y < reduced.height; ++y) {
-    AddRows(picture, y * reduction, reduction, sums.size(), sums.data());
-    uint8_t* out = reduced.Row(y);
-    for (size_t x = 0; x < static_cast<size_t>(reduced.width); ++x) {
-      uint32_t sum = count / 2;
-      for (size_t i = 0; i < static_cast<size_t>(reduction); ++i) {
-        sum += sums[x * static_cast<size_t>(reduction) + i];
-      }
-      out[x] = static_cast<uint8_t>(sum / count);
-    }
-  }
-  return reduced;
 }
 
 // One of the two scales: its local contrast and where its tests' pixels lie around a point.
@@ -149,10 +118,11 @@ int DescriptionReduction(const GrayImage& picture) {
 std::vector<Descriptor> DescribeSeaPoints(const GrayImage& picture, std::vector<SeaPoint>* points) {
   if (points->empty()) return {};
   const int reduction = DescriptionReduction(picture);
-  const GrayImage reduced = reduction == 1 ? GrayImage() : Reduce(picture, reduction);
+  GrayImage reduced;
+  for (int r = 1; r < reduction; r *= 2) reduced = HalfSize(r == 1 ? picture : reduced);
   const GrayImage& described = reduction == 1 ? picture : reduced;
   const TestScale fine(described, reduction, 0);
-  const TestScale coarse(Reduce(described, 2), 2 * reduction, kFirstCoarseTest);
+  const TestScale coarse(HalfSize(described), 2 * reduction, kFirstCoarseTest);
 
   const std::vector<int> half_widths = DiscHalfWidths();
   std::vector<Descriptor> descriptors(points->size());

@@ -9,6 +9,7 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/sparse_model.h"
 #include "colmap_seapoint/commands/adjust_by_mapper.h"
+#include "colmap_seapoint/commands/retriangulate.h"
 #include "colmap_seapoint/io/colmap_model.h"
 #include "colmap_seapoint/io/subprocess.h"
 
@@ -181,6 +182,9 @@ LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
     return fault.empty();
   };
   if (job.frees_distortion) result.distortion_is_sound = adjust(kDistortion);
+  const std::string fault = Retriangulate(
+      colmap, {job.database_path, job.image_path, job.options, job.log_path}, model);
+  if (!fault.empty()) refused += "; triangulation refused: " + fault;
   // It frees the distortion too.
   if (job.frees_principal_point && result.distortion_is_sound) adjust(kPrincipalPoint);
   result.outcome = Outcome(before, ReadSparseModel(model)) + refused;

@@ -22,8 +22,8 @@ struct AdjustmentJob {
   bool frees_principal_point = true;
 };
 
-// Adjusts `model` with COLMAP, with the distortion free, then with the principal point free as
-// well. The result takes the model's place when it is sound: the same pictures, no larger
+// Adjusts `model` with COLMAP, with the distortion free, triangulates it anew (retriangulate.h), and
+// adjusts it with the principal point free as well. The result takes the model's place when it is sound: the same pictures, no larger
 // reprojection error, focal lengths within a factor of two (the second adjustment: a fifth) and
 // principal points within a twentieth of the picture's longer side of what they were.
 // `colmap bundle_adjuster` gives the same result each time as long as it works with one thread,

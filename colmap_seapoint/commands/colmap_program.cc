@@ -19,11 +19,6 @@ constexpr MapperDefault kEveryRound[] = {
     {"Mapper.num_threads", "1"},
     // 30 in COLMAP. Hazy water leaves fewer; 20 costs the clear sets nothing (same models).
     {"Mapper.abs_pose_min_num_inliers", "20"},
-    // 4, 4 and 4 pixels in COLMAP. SeaPoints lie right to 0.2 to 0.4 pixels: what is off by more than
-    // 2 is another corner beside the right one, and pulls poses and lens.
-    {"Mapper.filter_max_reproj_error", "2"},
-    {"Mapper.tri_complete_max_reproj_error", "2"},
-    {"Mapper.tri_merge_max_reproj_error", "2"},
 };
 
 // COLMAP's own thresholds give the best first model. The pictures that they leave over are few to a
