@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "feature/rbrief_descriptor.h"
+#include "feature/sift_descriptor.h"
 
 namespace colmap_seapoint {
 
@@ -40,15 +41,18 @@ SeaPointExtractionOptions LevelOptions(const SeaPointExtractionOptions& options,
   return at_level;
 }
 
-void Append(const std::vector<SeaPoint>& points, const std::vector<Descriptor>& descriptors,
-            double scale_x, double scale_y, Features* features) {
-  for (SeaPoint point : points) {
+// `found`: of a level, in its coordinates.
+void Append(const Features& found, double scale_x, double scale_y, Features* features) {
+  for (SeaPoint point : found.points) {
     point.x = static_cast<float>(point.x * scale_x);
     point.y = static_cast<float>(point.y * scale_y);
     point.scale = static_cast<float>(std::sqrt(scale_x * scale_y));
     features->points.push_back(point);
   }
-  features->descriptors.insert(features->descriptors.end(), descriptors.begin(), descriptors.end());
+  features->descriptors.insert(features->descriptors.end(), found.descriptors.begin(),
+                               found.descriptors.end());
+  features->sift_descriptors.insert(features->sift_descriptors.end(),
+                                    found.sift_descriptors.begin(), found.sift_descriptors.end());
 }
 
 }  // namespace
@@ -68,11 +72,12 @@ ExtractedFeatures ExtractFeatures(const GrayImage& picture, const GrayImage& mas
     if (std::min(width, height) <= 2 * border) break;
 
     DetectionSummary summary;
-    std::vector<SeaPoint> points =
-        DetectSeaPoints(grey, level == 0 ? mask : level_mask, LevelOptions(options, level),
-                        border, &summary);
-    const std::vector<Descriptor> descriptors = DescribeSeaPoints(grey, &points);
-    Append(points, descriptors, static_cast<double>(picture.width) / width,
+    Features found;
+    found.points = DetectSeaPoints(grey, level == 0 ? mask : level_mask,
+                                   LevelOptions(options, level), border, &summary);
+    found.descriptors = DescribeSeaPoints(grey, &found.points);
+    if (options.descriptor == "sift") found.sift_descriptors = DescribeBySift(grey, found.points);
+    Append(found, static_cast<double>(picture.width) / width,
            static_cast<double>(picture.height) / height, &result.features);
     if (level == 0) result.detection = summary;
   }

@@ -6,11 +6,13 @@
 #include "feature/picture_turn.h"
 #include "feature/rbrief_descriptor.h"
 #include "feature/rbrief_pattern.h"
+#include "feature/sift_descriptor.h"
 
 namespace colmap_seapoint {
 
 void SeaPointMatchingOptions::Bind(OptionTable* table) {
   hamming.Bind(table);
+  sift.Bind(table);
   flow.Bind(table);
   guided.Bind(table);
   verification.Bind(table);
@@ -24,15 +26,38 @@ struct TurnedFeatures {
   double turn = 0;  // radians, from x towards y
 };
 
+// SIFT of picture 1 as picture 2 would see it. Empty: one of them has none, or they are not turned
+// by quarter turns against each other, which is all that can be done to it. (Pictures turned by 12
+// degrees lose a fifth of their matches by it, by 24 nearly all, and rBRIEF is turned freely.)
+std::vector<SiftDescriptor> TurnSift(const Features& features1, const Features& features2,
+                                     int steps) {
+  constexpr int kQuarter = kNumTurns / 4;
+  std::vector<SiftDescriptor> turned;
+  if (features2.sift_descriptors.empty() || steps % kQuarter != 0) return turned;
+  for (const SiftDescriptor& descriptor : features1.sift_descriptors) {
+    turned.push_back(TurnSiftDescriptor(descriptor, steps / kQuarter));
+  }
+  return turned;
+}
+
 TurnedFeatures TurnTowards(const Features& features1, const Features& features2) {
   const int steps = FindPictureTurn(features1, features2);
-  return {{features1.points, TurnDescriptors(features1.descriptors, steps)}, steps * kTurnStep};
+  return {{features1.points, TurnDescriptors(features1.descriptors, steps),
+           TurnSift(features1, features2, steps)},
+          steps * kTurnStep};
+}
+
+FeatureMatches MatchNearest(const Features& features1, const Features& features2,
+                            const SeaPointMatchingOptions& options) {
+  if (features1.sift_descriptors.empty()) {
+    return MatchHamming(features1.descriptors, features2.descriptors, options.hamming);
+  }
+  return MatchSift(features1.sift_descriptors, features2.sift_descriptors, options.sift);
 }
 
 FeatureMatches Consolidate(const TurnedFeatures& turned1, const Features& features2,
                            const SeaPointMatchingOptions& options) {
-  const FeatureMatches nearest =
-      MatchHamming(turned1.features.descriptors, features2.descriptors, options.hamming);
+  const FeatureMatches nearest = MatchNearest(turned1.features, features2, options);
   return FilterFlow(turned1.features.points, features2.points, nearest, turned1.turn, options.flow);
 }
 

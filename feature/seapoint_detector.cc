@@ -74,6 +74,10 @@ void SeaPointExtractionOptions::Bind(OptionTable* table) {
   table->Add(group + "nms_radius", &nms_radius,
              "radius of the non-maximum suppression, pixels; 0 = a tenth of the points' spacing",
              "ours", 0, 100);
+  table->Add(group + "descriptor", &descriptor,
+             "what SeaPoints are matched by; sift: more robust to light and haze, slower, and "
+             "COLMAP's own matchers can use it",
+             "paper 2.4, 4", {"rbrief", "sift"});
 }
 
 std::string SeaPointExtractionOptions::Check() const {

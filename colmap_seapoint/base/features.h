@@ -22,9 +22,18 @@ struct SeaPoint {
 // rBRIEF, 256 tests; bit i of the descriptor is bit i % 8 of byte i / 8.
 using Descriptor = std::array<uint8_t, 32>;
 
+// Upright RootSIFT in COLMAP's own form: four by four cells of eight directions, Euclidean length
+// about 512 (paper 4).
+using SiftDescriptor = std::array<uint8_t, 128>;
+
+// rBRIEF is always there: the vote on how far two pictures are turned, guided matching and whatever
+// wants short descriptors stay as they are. SIFT comes on top where it was asked for, and takes the
+// place of rBRIEF only between two pictures that both have it: pictures with and without it can be
+// mixed in one database.
 struct Features {
   std::vector<SeaPoint> points;
-  std::vector<Descriptor> descriptors;  // same length
+  std::vector<Descriptor> descriptors;           // same length
+  std::vector<SiftDescriptor> sift_descriptors;  // same length, or empty: not asked for
 };
 
 struct FeatureMatch {

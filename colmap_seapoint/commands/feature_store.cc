@@ -6,7 +6,8 @@ namespace {
 constexpr size_t kMaxBytes = size_t{256} << 20;
 
 size_t BytesOf(const Features& features) {
-  return sizeof(Features) + features.points.size() * (sizeof(SeaPoint) + sizeof(Descriptor));
+  return sizeof(Features) + features.points.size() * (sizeof(SeaPoint) + sizeof(Descriptor)) +
+         features.sift_descriptors.size() * sizeof(SiftDescriptor);
 }
 
 }  // namespace

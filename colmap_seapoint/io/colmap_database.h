@@ -3,7 +3,9 @@
 //
 // rBRIEF descriptors live in a table of our own ("seapoint_descriptors", keyed to images with
 // ON DELETE CASCADE), and `descriptors` gets a stub row (rows 0, cols 128, data x''), which every
-// COLMAP tried survives. The table also keeps what tells whether a picture or an option changed.
+// COLMAP tried survives; or the picture's SIFT descriptors, if it has them: they are what COLMAP
+// itself would store, and its own matchers can use them. Our table also keeps what tells whether a
+// picture or an option changed.
 #pragma once
 
 #include <cstdint>
@@ -63,7 +65,7 @@ class ColmapDatabase {
   bool HasKeypoints(uint32_t image_id) const;
   // The `fingerprint` that WriteFeatures stored; nullopt when the picture has no SeaPoints of ours.
   std::optional<std::string> FeaturesFingerprint(uint32_t image_id) const;
-  // Keypoints (x, y, scale, orientation), stub descriptor row, our descriptor row. Replaces them,
+  // Keypoints (x, y, scale, orientation), SIFT or stub descriptor row, our row. Replaces them,
   // and drops this image's matches and two-view geometries, when they were there (ours changed).
   void WriteFeatures(uint32_t image_id, const Features& features, const std::string& fingerprint);
   // nullopt when the image has no SeaPoints of ours, or its keypoints are not the ones that belong
@@ -91,6 +93,7 @@ class ColmapDatabase {
   bool HasRows(const std::string& table) const;
   void AddFrame(int64_t image_id, int64_t camera_id);
   void DeleteMatchesOf(int64_t image_id);
+  std::vector<SiftDescriptor> ReadSift(uint32_t image_id, size_t count) const;
   void CheckIndices(ImagePair pair, const FeatureMatches& matches, const char* table) const;
 
   std::string path_;

@@ -29,6 +29,11 @@ class Extractor : public testing::Test {
     return nlohmann::json::parse(ReadBytes(Database().string() + ".feature_extractor.run.json"));
   }
 
+  std::string WriteList(const std::string& names) const {
+    WriteBytes(folder_ / "list.txt", names + "\n");
+    return (folder_ / "list.txt").string();
+  }
+
   ColmapDatabase Open() const { return {Database(), ColmapDatabase::Mode::kReadWrite}; }
 
   // Exactly these pictures are left out, each for a reason with this word, in the report and on
@@ -235,6 +240,42 @@ TEST_F(Extractor, SkipsWhatIsUnchangedAndRedoesWhatChanged) {
                     "--SeaPointExtraction.max_num_features", "200"});
   EXPECT_EQ(result.err.find("there already"), std::string::npos) << result.Text();
   EXPECT_LE(Open().ReadFeatures(2).value().points.size(), 200u);
+}
+
+// Another descriptor is another option: everything is extracted again, and a mixed database works.
+TEST_F(Extractor, EitherDescriptor) {
+  WriteStrip(Images(), 3);
+  ColorImage darker = StripPicture(1);  // so that hardly two rBRIEF descriptors are the same
+  for (uint8_t& level : darker.data) level = static_cast<uint8_t>(level * level / 255);
+  WriteImage(Images() / "img2.png", darker);
+  const std::string option = "--SeaPointExtraction.descriptor";
+  EXPECT_EQ(Extract({option, "surf"}).exit_code, 2);
+  ASSERT_EQ(Extract({option, "rbrief"}).exit_code, 0);
+  EXPECT_TRUE(Open().ReadFeatures(1).value().sift_descriptors.empty());
+  CliResult result =
+      Extract({option, "sift", "--image_list_path", WriteList("img1.png\nimg2.png")});
+  ASSERT_EQ(result.exit_code, 0) << result.Text();
+  EXPECT_EQ(result.err.find("there already"), std::string::npos) << result.Text();
+  {
+    const ColmapDatabase database = Open();
+    for (const uint32_t id : {1u, 2u}) {
+      const Features features = database.ReadFeatures(id).value();
+      EXPECT_EQ(features.sift_descriptors.size(), features.points.size());
+    }
+    EXPECT_TRUE(database.ReadFeatures(3).value().sift_descriptors.empty());
+  }
+  // Nothing is left to match rBRIEF by: only the pair that has SIFT is matched.
+  result = RunProgram(SEAPOINT_PROGRAM,
+                      {"exhaustive_matcher", "--database_path", Database().string(),
+                       "--SeaPointMatching.max_distance", "0", "--SeaPointMatching.guided", "0"});
+  EXPECT_EQ(result.exit_code, 0) << result.Text();
+  EXPECT_GT(Open().ReadMatches({1, 2}).size(), 200u);
+  EXPECT_LT(Open().ReadMatches({2, 3}).size(), 20u);
+  ASSERT_EQ(Extract({option, "sift"}).exit_code, 0);
+  result = RunProgram(SEAPOINT_PROGRAM,
+                      {"sequential_matcher", "--database_path", Database().string()});
+  EXPECT_EQ(result.exit_code, 0) << result.Text();
+  EXPECT_GT(Open().ReadTwoViewGeometry({2, 3}).inliers.size(), 200u);
 }
 
 TEST_F(Extractor, MasksKeepSeaPointsAway) {

@@ -67,6 +67,35 @@ TEST_F(ColmapBinary, OurDatabaseSurvivesItsTools) {
   EXPECT_TRUE(db.ReadVerifiedPairs().empty());
 }
 
+// SIFT lies where COLMAP keeps its own: its matcher finds what is the same in both pictures.
+TEST_F(ColmapBinary, ItMatchesOurSift) {
+  std::filesystem::create_directory(dir_ / "images");
+  const Features features = MakeFeaturesWithSift(200, 1);
+  {
+    ColmapDatabase db(dir_ / "a.db", Mode::kCreateIfMissing);
+    const uint32_t camera_id = db.AddCamera(MakeCamera(CameraModel::kOpenCV, 800, 640, 480));
+    for (const char* name : {"a.png", "b.png"}) {
+      WriteImage(dir_ / (std::string("images/") + name), GrayImage(640, 480, 1, 90));
+      db.WriteFeatures(db.AddImage(name, camera_id), features, "p");
+    }
+  }
+  EXPECT_EQ(RunColmap("feature_extractor --SiftExtraction.use_gpu 0 --image_path " +
+                      (dir_ / "images").string() + Arguments()),
+            0);
+  EXPECT_EQ(RunColmap("exhaustive_matcher --SiftMatching.use_gpu 0" + Arguments()), 0);
+  {
+    const ColmapDatabase db(dir_ / "a.db", Mode::kReadWrite);
+    ExpectSameFeatures(db.ReadFeatures(1), features);
+    const FeatureMatches matches = db.ReadMatches({1, 2});
+    EXPECT_GE(matches.size(), 190u);  // COLMAP's search is approximate
+    for (const FeatureMatch& match : matches) EXPECT_EQ(match.idx1, match.idx2);
+    EXPECT_GE(db.ReadTwoViewGeometry({1, 2}).inliers.size(), 190u);
+  }
+  EXPECT_EQ(RunColmap("database_cleaner --type all" + Arguments()), 0);
+  EXPECT_EQ(QueryOne(dir_ / "a.db", "SELECT count(*) FROM seapoint_descriptors"), "0");
+  ExpectSound(dir_ / "a.db");
+}
+
 TEST_F(ColmapBinary, ItConvertsOurModels) {
   SparseModel model;
   Camera camera = MakeCamera(CameraModel::kOpenCV, 500.125, 640, 480);

@@ -66,6 +66,40 @@ TEST_F(DatabaseTest, FeaturesRoundTripBesideAStub) {
   ExpectSameFeatures(db_.ReadFeatures(a_), Features());
 }
 
+TEST_F(DatabaseTest, SiftIsStoredAsColmapsOwn) {
+  const Features features = MakeFeaturesWithSift(20, 1);
+  db_.WriteFeatures(a_, features, "sift");
+  ExpectSameFeatures(db_.ReadFeatures(a_), features);
+  ExpectSameFeatures(db_.ReadFeatures(b_), MakeFeatures(10, 2));  // without, in the same database
+  EXPECT_EQ(Query(path_, "SELECT rows, cols, length(data), type FROM descriptors"),
+            (std::vector<std::string>{"20|128|2560|0", "0|128|0|0"}));
+  db_.WriteFeatures(a_, MakeFeatures(20, 1), "rbrief");
+  ExpectSameFeatures(db_.ReadFeatures(a_), MakeFeatures(20, 1));
+  EXPECT_EQ(QueryOne(path_, "SELECT rows, cols, length(data) FROM descriptors"), "0|128|0");
+}
+
+TEST_F(DatabaseTest, DamagedSiftIsAnError) {
+  const std::string damages[] = {
+      "UPDATE descriptors SET data = zeroblob(2560)", "UPDATE descriptors SET rows = 19",
+      "UPDATE descriptors SET rows = 0, data = x''", "UPDATE descriptors SET cols = 32",
+      "DELETE FROM descriptors"};
+  for (const std::string& damage : damages) {
+    db_.WriteFeatures(a_, MakeFeaturesWithSift(20, 1), "sift");
+    ASSERT_TRUE(db_.ReadFeatures(a_));
+    Execute(path_, damage + " WHERE image_id = 1");
+    EXPECT_ERROR(db_.ReadFeatures(a_), "the SIFT descriptors of image 1 are damaged");
+  }
+}
+
+// A database of the time before SIFT is read, and taken further.
+TEST_F(DatabaseTest, OurTableGrows) {
+  Execute(path_, "ALTER TABLE seapoint_descriptors DROP COLUMN sift_hash");
+  ExpectSameFeatures(db_.ReadFeatures(a_), MakeFeatures(20, 1));
+  db_.WriteFeatures(b_, MakeFeaturesWithSift(7, 5), "sift");
+  ExpectSameFeatures(db_.ReadFeatures(a_), MakeFeatures(20, 1));
+  ExpectSameFeatures(db_.ReadFeatures(b_), MakeFeaturesWithSift(7, 5));
+}
+
 TEST_F(DatabaseTest, ForeignKeypointsAreNotOurs) {
   Execute(path_, "UPDATE keypoints SET data = zeroblob(320) WHERE image_id = 1");
   EXPECT_FALSE(db_.ReadFeatures(a_));

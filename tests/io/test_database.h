@@ -79,6 +79,19 @@ inline Features MakeFeatures(int count, unsigned seed) {
   return features;
 }
 
+inline Features MakeFeaturesWithSift(int count, unsigned seed) {
+  Features features = MakeFeatures(count, seed);
+  std::mt19937 random(seed + 1000);
+  features.sift_descriptors.resize(features.points.size());
+  for (SiftDescriptor& descriptor : features.sift_descriptors) {
+    descriptor.fill(0);
+    for (size_t group = 0; group < 8; ++group) {
+      descriptor[16 * group + random() % 16] = 181;  // a length of 512
+    }
+  }
+  return features;
+}
+
 inline void ExpectSameFeatures(const std::optional<Features>& a, const Features& b) {
   ASSERT_TRUE(a.has_value());
   ASSERT_EQ(a->points.size(), b.points.size());
@@ -89,6 +102,7 @@ inline void ExpectSameFeatures(const std::optional<Features>& a, const Features&
     EXPECT_EQ(a->points[i].orientation, b.points[i].orientation);
   }
   EXPECT_EQ(a->descriptors, b.descriptors);
+  EXPECT_EQ(a->sift_descriptors, b.sift_descriptors);
 }
 
 inline TwoViewGeometry MakeGeometry(FeatureMatches inliers) {
