@@ -75,7 +75,7 @@ void SeaPointExtractionOptions::Bind(OptionTable* table) {
              "radius of the non-maximum suppression, pixels; 0 = a tenth of the points' spacing",
              "ours", 0, 100);
   table->Add(group + "descriptor", &descriptor,
-             "what SeaPoints are matched by; sift: more robust to light and haze, slower, and "
+             "what SeaPoints are matched by; sift: some more matches on hard pairs, slower; "
              "COLMAP's own matchers can use it",
              "paper 2.4, 4", {"rbrief", "sift"});
 }

@@ -22,7 +22,7 @@ struct SeaPointExtractionOptions {
   int window_size = 7;
   double harris_k = 0.04;
   int nms_radius = 0;
-  std::string descriptor = "rbrief";  // or "sift": that on top (not the detector's; see features.h)
+  std::string descriptor = "rbrief";  // or "sift"; see Features
 
   void Bind(OptionTable* table);
   // Rules between options: "" or the whole sentence. Ranges are the table's.

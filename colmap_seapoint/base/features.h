@@ -22,8 +22,7 @@ struct SeaPoint {
 // rBRIEF, 256 tests; bit i of the descriptor is bit i % 8 of byte i / 8.
 using Descriptor = std::array<uint8_t, 32>;
 
-// Upright RootSIFT in COLMAP's own form: four by four cells of eight directions, Euclidean length
-// about 512 (paper 4).
+// Upright RootSIFT in COLMAP's own form, of Euclidean length 512 but for rounding (paper 4).
 using SiftDescriptor = std::array<uint8_t, 128>;
 
 // rBRIEF is always there: the vote on how far two pictures are turned, guided matching and whatever
