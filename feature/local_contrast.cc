@@ -1,6 +1,7 @@
 #include "feature/local_contrast.h"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "colmap_seapoint/base/vector_clones.h"
@@ -12,15 +13,22 @@ namespace {
 constexpr int kRadius = 6;  // of the smoothing: three boxes of 5 after each other
 constexpr size_t kNumTaps = 2 * kRadius + 1;
 
-// Three boxes of 5 at once: at most 125 * 255.
+// Three boxes of 5 at once: at most 125 * 255. `out` overlaps none of the rows.
 SEAPOINT_VECTOR_CLONES
-void SmoothDown(const uint8_t* const* r, int width, uint16_t* out) {
+void SmoothDown(const std::array<const uint8_t*, kNumTaps>& rows, int width,
+                uint16_t* __restrict out) {
+  const std::array<const uint8_t*, kNumTaps> r = rows;
+#pragma GCC ivdep
   for (int x = 0; x < width; ++x) {
-    auto pair = [&](int t) { return static_cast<uint16_t>(r[t][x] + r[12 - t][x]); };
-    const auto ends = static_cast<uint16_t>(pair(0) + 3 * pair(1));
-    const auto sides = static_cast<uint16_t>(6 * pair(2) + 10 * pair(3));
-    const auto middle = static_cast<uint16_t>(15 * pair(4) + 18 * pair(5) + 19 * r[6][x]);
-    out[x] = static_cast<uint16_t>(ends + sides + middle);
+    const auto p0 = static_cast<uint16_t>(r[0][x] + r[12][x]);
+    const auto p1 = static_cast<uint16_t>(r[1][x] + r[11][x]);
+    const auto p2 = static_cast<uint16_t>(r[2][x] + r[10][x]);
+    const auto p3 = static_cast<uint16_t>(r[3][x] + r[9][x]);
+    const auto p4 = static_cast<uint16_t>(r[4][x] + r[8][x]);
+    const auto p5 = static_cast<uint16_t>(r[5][x] + r[7][x]);
+    const auto ends = static_cast<uint16_t>(p0 + 3 * p1 + 6 * p2);
+    const auto middle = static_cast<uint16_t>(10 * p3 + 15 * p4 + 18 * p5 + 19 * r[6][x]);
+    out[x] = static_cast<uint16_t>(ends + middle);
   }
 }
 
@@ -45,7 +53,8 @@ void SlideDown(const uint16_t* entering, const uint16_t* leaving, int width, uin
 }
 
 SEAPOINT_VECTOR_CLONES
-void MeanOfPairs(const uint8_t* above, const uint8_t* below, int width, uint8_t* out) {
+void MeanOfPairs(const uint8_t* above, const uint8_t* below, int width, uint8_t* __restrict out) {
+#pragma GCC ivdep
   for (int x = 0; x < width; ++x) {
     const unsigned sum = above[2 * x] + above[2 * x + 1] + below[2 * x] + below[2 * x + 1];
     out[x] = static_cast<uint8_t>((sum + 2) >> 2);
@@ -57,9 +66,9 @@ Image<uint16_t> Smooth(const GrayImage& picture) {
   const auto width = static_cast<size_t>(picture.width);
   std::vector<uint16_t> row(width + 2 * kRadius), box(row.size());
   for (int y = 0; y < picture.height; ++y) {
-    const uint8_t* rows[kNumTaps];
+    std::array<const uint8_t*, kNumTaps> rows;
     for (int t = 0; t < static_cast<int>(kNumTaps); ++t) {
-      rows[t] = picture.Row(std::clamp(y + t - kRadius, 0, picture.height - 1));
+      rows[static_cast<size_t>(t)] = picture.Row(std::clamp(y + t - kRadius, 0, picture.height - 1));
     }
     SmoothDown(rows, picture.width, row.data() + kRadius);
     std::fill_n(row.begin(), kRadius, row[kRadius]);
