@@ -34,6 +34,13 @@ class SeaPointDetector : public FeatureDetector {
                        const DetectedFeatures& features2) const override {
     return MatchSeaPoints(features1.features, features2.features, SeaPointMatchingOptions());
   }
+  TwoViewGeometry Verify(const Camera& camera1, const DetectedFeatures& features1,
+                         const Camera& camera2, const DetectedFeatures& features2,
+                         const FeatureMatches&) const override {
+    return MatchFeatures(camera1, features1.features, camera2, features2.features,
+                         SeaPointMatchingOptions())
+        .geometry;
+  }
 
  private:
   SeaPointExtractionOptions extraction_;
@@ -74,6 +81,12 @@ class OpenCVDetector : public FeatureDetector {
           {static_cast<uint32_t>(match.queryIdx), static_cast<uint32_t>(match.trainIdx)});
     }
     return FilterFlow(features1.Points(), features2.Points(), matches, 0, FlowFilterOptions());
+  }
+  TwoViewGeometry Verify(const Camera& camera1, const DetectedFeatures& features1,
+                         const Camera& camera2, const DetectedFeatures& features2,
+                         const FeatureMatches& matches) const override {
+    return VerifyTwoViews(camera1, features1.Points(), camera2, features2.Points(), matches,
+                          TwoViewVerificationOptions());
   }
 
  private:

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "colmap_seapoint/base/camera.h"
 #include "colmap_seapoint/base/features.h"
 #include "colmap_seapoint/base/image.h"
 
@@ -29,6 +30,10 @@ class FeatureDetector {
   // One-to-one nearest neighbours, then FilterFlow with its defaults.
   virtual FeatureMatches Match(const DetectedFeatures& features1,
                                const DetectedFeatures& features2) const = 0;
+  // The geometry of those matches; of SeaPoints with what guided matching adds to it.
+  virtual TwoViewGeometry Verify(const Camera& camera1, const DetectedFeatures& features1,
+                                 const Camera& camera2, const DetectedFeatures& features2,
+                                 const FeatureMatches& matches) const = 0;
 };
 
 // SeaPoints (the baseline of all ratios), ORB, SIFT. ORB and SIFT are asked for `max_num_features`.

@@ -22,7 +22,7 @@ matching; pictures in natural order of their names. Shares are in percent.
   default (FAST 20, contrast 0.04) where they found too few points with it.
 - matched: matches left by the flow filter, over the smaller number of points of the two pictures.
 - verified: inliers of the two-view geometry (focal length 1.2 x the longer side, no prior), over the
-  same.
+  same; of SeaPoints with what guided matching along its epipolar lines adds.
 - reliable area: influence areas around the matched points of the second picture, share of it.
 - CPU: user + sys seconds of the whole process, decoding not counted; the ratio is the median of the
   pictures' (pairs') own ratios, measured in turn in one sitting.

@@ -13,7 +13,6 @@
 #include "colmap_seapoint/io/image_file.h"
 #include "densify/densify_pair.h"
 #include "densify/partial_densification_options.h"
-#include "feature/two_view_verification.h"
 #include "tests/benchmark/detectors.h"
 #include "tests/benchmark/pair_measures.h"
 #include "tests/benchmark/pair_truth.h"
@@ -86,8 +85,8 @@ FeatureRow MakeRow(const FeatureDetector& detector, const Picture& picture1,
                    const InfluenceMask& mask) {
   const auto& points1 = picture1.features[d].Points();
   const auto& points2 = picture2.features[d].Points();
-  const TwoViewGeometry geometry = VerifyTwoViews(picture1.camera, points1, picture2.camera,
-                                                  points2, matches, TwoViewVerificationOptions());
+  const TwoViewGeometry geometry = detector.Verify(
+      picture1.camera, picture1.features[d], picture2.camera, picture2.features[d], matches);
   FeatureRow row;
   row.detector = detector.Name();
   row.setting = detector.Setting();
