@@ -17,7 +17,9 @@ namespace colmap_seapoint {
 
 namespace {
 
-constexpr size_t kMinFlow = 20;  // inliers that make a flow
+// Inliers that make a flow. Pictures of different places can agree on 25 by chance, and guided
+// matching would make more of them.
+constexpr size_t kMinFlow = 40;
 
 struct Candidate {
   int distance;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "feature/harris_measure.h"
+#include "feature/light_balance.h"
 #include "feature/local_maxima.h"
 
 namespace colmap_seapoint {
@@ -15,16 +16,15 @@ struct Corner {
   float measure;  // remapped to 0..255
 };
 
-// Remaps to 0..255 by the extremes of the whole map (paper 2.3).
-std::vector<float> Remapped(const LocalMaxima& found) {
-  std::vector<float> measures;
-  measures.reserve(found.maxima.size());
-  const double scale = 255.0 / (static_cast<double>(found.highest) - found.lowest);
-  for (const LocalMaximum& maximum : found.maxima) {
-    const double above_lowest = static_cast<double>(maximum.measure()) - found.lowest;
-    measures.push_back(static_cast<float>(above_lowest * scale));
+// Remaps to 0..255 by the extremes of the whole map (paper 2.3); balanced ones by their own greatest.
+void Remap(const LocalMaxima& found, bool are_balanced, std::vector<float>* measures) {
+  if (measures->empty()) return;
+  const double highest =
+      are_balanced ? *std::max_element(measures->begin(), measures->end()) : found.highest;
+  const double scale = 255.0 / (highest - found.lowest);
+  for (float& measure : *measures) {
+    measure = static_cast<float>((static_cast<double>(measure) - found.lowest) * scale);
   }
-  return measures;
 }
 
 // Ours: the top of the quadratic through the 3 x 3 neighbourhood, at most half a pixel away.
@@ -78,6 +78,9 @@ void SeaPointExtractionOptions::Bind(OptionTable* table) {
              "what SeaPoints are matched by; sift: some more matches on hard pairs, slower; "
              "COLMAP's own matchers can use it",
              "paper 2.4, 4", {"rbrief", "sift"});
+  table->Add(group + "light_balance", &light_balance,
+             "how far local contrast is balanced before the threshold; 0 = not (the paper)", "ours", 0,
+             1);
 }
 
 std::string SeaPointExtractionOptions::Check() const {
@@ -98,7 +101,9 @@ std::vector<SeaPoint> DetectSeaPoints(const GrayImage& picture, const GrayImage&
   border = std::max(border, HarrisBorder(harris) + 1);
   const LocalMaxima found =
       FindLocalMaxima(picture, mask, harris, NmsRadius(picture, options), border, num_threads);
-  const std::vector<float> measures = Remapped(found);
+  std::vector<float> measures =
+      BalanceLight(found, picture.width, picture.height, options.light_balance);
+  Remap(found, options.light_balance != 0, &measures);
   const AdaptiveThreshold threshold =
       FindAdaptiveThreshold(measures, options.min_num_features, options.max_num_features);
   summary->status = threshold.status;

@@ -1,6 +1,6 @@
 // The SeaPoint detector (paper 2.3, Figure 4): Harris measure of every pixel, remapped to 0..255 by
 // the map's own extremes; non-maximum suppression in a radius; adaptive threshold from the
-// cumulative histogram; (ours) a quadratic sub-pixel fit.
+// cumulative histogram; (ours) measures balanced against uneven light, a quadratic sub-pixel fit.
 #pragma once
 
 #include <cstdint>
@@ -23,6 +23,7 @@ struct SeaPointExtractionOptions {
   double harris_k = 0.04;
   int nms_radius = 0;
   std::string descriptor = "rbrief";  // or "sift"; see Features
+  double light_balance = 0.5;
 
   void Bind(OptionTable* table);
   // Rules between options: "" or the whole sentence. Ranges are the table's.

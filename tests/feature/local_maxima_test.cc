@@ -131,6 +131,7 @@ TEST(LocalMaximaTest, PicturesOfTheWorld) {
       const HarrisOptions harris = {sigma, 7, 0.04};
       EXPECT_GT(CheckPicture(picture, GrayImage(), harris, 3, 12), 100u);
       SeaPointExtractionOptions options;
+      options.light_balance = 0;  // the paper
       options.smoothing_sigma = sigma;
       options.nms_radius = 3;
       options.min_num_features = 80;

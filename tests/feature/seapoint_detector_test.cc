@@ -136,6 +136,7 @@ TEST(SeaPointDetectorTest, EqualsThePaperWordByWord) {
         SCOPED_TRACE(named.name + std::string(", radius ") + std::to_string(radius) + ", minimum " +
                      std::to_string(min_count));
         SeaPointExtractionOptions options;
+        options.light_balance = 0;  // the paper
         options.nms_radius = radius;
         options.min_num_features = min_count;
         options.max_num_features = min_count + 2;
@@ -153,6 +154,7 @@ TEST(SeaPointDetectorTest, EqualsThePaperWordByWord) {
 // first in raster order; and equal crossings stand in raster order.
 TEST(SeaPointDetectorTest, TiesAreInRasterOrder) {
   SeaPointExtractionOptions options;
+  options.light_balance = 0;  // the paper
   options.nms_radius = 3;
   options.min_num_features = 1;
   options.max_num_features = 100000;
@@ -181,6 +183,7 @@ TEST(SeaPointDetectorTest, OfEqualMaximaTheFirstInRasterOrderStays) {
       for (int x = 40; x < 43; ++x) picture.At(x, y) = picture.At(x + dx, y + dy) = 200;
     }
     SeaPointExtractionOptions options;
+    options.light_balance = 0;  // the paper
     options.smoothing_sigma = 1;
     options.window_size = 3;
     options.min_num_features = 1;
@@ -209,6 +212,7 @@ TEST(SeaPointDetectorTest, SubPixelFollowsASmoothSpot) {
         }
       }
       SeaPointExtractionOptions options;
+      options.light_balance = 0;  // the paper
       options.min_num_features = options.max_num_features = 1;
       options.nms_radius = 10;
       DetectionSummary summary;
@@ -220,8 +224,56 @@ TEST(SeaPointDetectorTest, SubPixelFollowsASmoothSpot) {
   }
 }
 
+// To the right the picture gets darker: the same texture with less and less of its contrast.
+TEST(SeaPointDetectorTest, BalancedLightFindsWhatLiesInTheDark) {
+  GrayImage picture = RandomPicture(600, 300, 12);
+  for (int y = 0; y < 300; ++y) {
+    for (int x = 0; x < 600; ++x) {
+      picture.At(x, y) = static_cast<uint8_t>(picture.At(x, y) * (1 - x / 800.0));
+    }
+  }
+  SeaPointExtractionOptions options;
+  options.min_num_features = 300;
+  options.max_num_features = 320;
+  std::vector<double> shares;
+  for (const double strength : {0.0, 0.5, 1.0}) {
+    options.light_balance = strength;
+    DetectionSummary summary;
+    const auto points = DetectSeaPoints(picture, GrayImage(), options, 16, &summary);
+    EXPECT_EQ(summary.status, ThresholdStatus::kConverged);
+    EXPECT_TRUE(points.size() >= 300 && points.size() <= 320) << points.size();
+    EXPECT_LE(summary.num_rounds, 6);
+    const auto num_dark = std::count_if(points.begin(), points.end(),
+                                        [](const SeaPoint& point) { return point.x > 300; });
+    shares.push_back(static_cast<double>(num_dark) / static_cast<double>(points.size()));
+  }
+  EXPECT_LT(shares[0], 0.02);
+  EXPECT_GT(shares[1], shares[0] + 0.05);
+  EXPECT_NEAR(shares[2], 0.5, 0.1);
+}
+
+// Evenly lit, the balance takes next to nothing away.
+TEST(SeaPointDetectorTest, BalanceLeavesEvenLightAlone) {
+  const GrayImage picture = RandomPicture(500, 400, 13);
+  SeaPointExtractionOptions options;
+  options.min_num_features = 300;
+  options.max_num_features = 320;
+  DetectionSummary summary;
+  options.light_balance = 0;
+  const auto plain = DetectSeaPoints(picture, GrayImage(), options, 16, &summary);
+  options.light_balance = 0.5;
+  const auto balanced = DetectSeaPoints(picture, GrayImage(), options, 16, &summary);
+  const auto num_kept = std::count_if(plain.begin(), plain.end(), [&](const SeaPoint& point) {
+    return std::any_of(balanced.begin(), balanced.end(), [&](const SeaPoint& other) {
+      return other.x == point.x && other.y == point.y;
+    });
+  });
+  EXPECT_GE(num_kept, 250);
+}
+
 TEST(SeaPointDetectorTest, FlatPictureHasNone) {
   SeaPointExtractionOptions options;
+  options.light_balance = 0;  // the paper
   for (const int level : {0, 127, 255}) {
     DetectionSummary summary;
     summary.status = ThresholdStatus::kConverged;
@@ -247,6 +299,7 @@ TEST(SeaPointDetectorTest, BorderAndMaskKeepPointsOut) {
     for (int x = 60; x < 100; ++x) mask.At(x, y) = 0;
   }
   SeaPointExtractionOptions options;
+  options.light_balance = 0;  // the paper
   options.nms_radius = 2;
   options.min_num_features = 20;
   options.max_num_features = 100000;
@@ -270,6 +323,7 @@ TEST(SeaPointDetectorTest, BorderAndMaskKeepPointsOut) {
 
 TEST(SeaPointDetectorTest, PictureSmallerThanTheBorder) {
   SeaPointExtractionOptions options;
+  options.light_balance = 0;  // the paper
   for (const int size : {0, 1, 3, 15, 56}) {
     DetectionSummary summary;
     const GrayImage picture = RandomPicture(size, size, 7);
