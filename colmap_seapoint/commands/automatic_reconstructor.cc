@@ -105,7 +105,9 @@ std::string Reconstruction::PicturesFingerprint(
   std::string text = kMatchingVersion;
   text += OptionsFingerprint(OptionValues(options_.reader));
   text += OptionsFingerprint(OptionValues(options_.matching));
-  text += MatchesAllPairs() ? "exhaustive" : OptionsFingerprint(OptionValues(options_.pairs));
+  text += MatchesAllPairs() ? "exhaustive"
+                            : OptionsFingerprint(OptionValues(options_.pairs)) +
+                                  std::to_string(options_.run.random_seed);
   for (const ReadablePicture& picture : pictures) {
     const ImageInfo& info = picture.info;
     text += "\n" + picture.name + " " + std::to_string(info.width) + " " +

@@ -16,8 +16,17 @@ std::vector<DatabaseImage> ImagesWithSeaPoints(const std::string& database_path,
                                                const ColmapDatabase& database, RunReport* report);
 
 // Pairs that have a row are skipped: the same call again goes on where an earlier one stopped.
-// What is written does not depend on num_threads.
+// What is written does not depend on num_threads. A pair counts as verified only when at least
+// `min_inlier_share` of its matches are inliers.
 void MatchPairs(const std::vector<ImagePair>& pairs, const SeaPointMatchingOptions& options,
-                int num_threads, ColmapDatabase* database, RunReport* report);
+                double min_inlier_share, int num_threads, ColmapDatabase* database,
+                RunReport* report);
+
+// What pairs that need not overlap must show to count as verified, beyond the user's options.
+SeaPointMatchingOptions DemandingOptions(const SeaPointMatchingOptions& options);
+inline constexpr double kDemandingInlierShare = 0.5;
+
+// A picture that no other one matches is lost for the mapper: says so, after all pairs are matched.
+void WarnOfLonelyImages(const ColmapDatabase& database, const std::vector<DatabaseImage>& images);
 
 }  // namespace colmap_seapoint

@@ -30,6 +30,16 @@ struct DatabaseImage {
   std::string name;
 };
 
+// Where a picture was taken, as far as the database knows. Any COLMAP writes one of three shapes:
+// images.prior_tx.. up to 3.9, then pose_priors by image, from 4.0 pose_priors by frame data.
+struct PositionPrior {
+  enum class System { kUnknown = -1, kGeographic = 0, kCartesian = 1 };  // COLMAP's numbers
+
+  uint32_t image_id = 0;
+  Eigen::Vector3d position;  // latitude, longitude (degrees), altitude; or x, y, z
+  System system = System::kUnknown;
+};
+
 // A pair of image ids, smaller first.
 using ImagePair = std::pair<uint32_t, uint32_t>;
 
@@ -55,6 +65,9 @@ class ColmapDatabase {
   // frame, and a new camera its rig. Throws Error for a name that IsSafeImageName refuses, a name
   // that is there already, and a camera that is not.
   uint32_t AddImage(const std::string& name, uint32_t camera_id);
+
+  // Of the images that have one, by image_id; finite. A row of pose_priors wins over images.prior_*.
+  std::vector<PositionPrior> ReadPositionPriors() const;
 
   // Everything written between Begin and Commit lands together or not at all; without them, each
   // call does. What was committed survives kill -9 at any moment.
@@ -83,6 +96,16 @@ class ColmapDatabase {
   FeatureMatches ReadMatches(ImagePair pair) const;           // table `matches`
   TwoViewGeometry ReadTwoViewGeometry(ImagePair pair) const;  // table `two_view_geometries`
   std::vector<ImagePair> ReadVerifiedPairs() const;           // rows > 0
+
+  // The pairs that loop detection chose, and of what (`fingerprint`): a table of our own, so that a
+  // run that was interrupted goes on with the same pairs. nullopt when they were chosen of
+  // something else, or never.
+  std::optional<std::vector<ImagePair>> ReadLoopPairs(const std::string& fingerprint) const;
+  // Whatever their fingerprint; empty when there are none.
+  std::vector<ImagePair> ReadLoopPairs() const;
+  // Replaces the list. Matches and two-view geometries of pairs that only the old list had are
+  // dropped: a run from the start would not have them.
+  void WriteLoopPairs(const std::string& fingerprint, const std::vector<ImagePair>& pairs);
 
  private:
   void Open(Mode mode, int busy_timeout_ms);

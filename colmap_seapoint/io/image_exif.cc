@@ -8,10 +8,10 @@
 namespace colmap_seapoint {
 namespace {
 
-std::optional<double> Number(const Exiv2::ExifData& exif, const char* key) {
+std::optional<double> Number(const Exiv2::ExifData& exif, const char* key, int index = 0) {
   const auto found = exif.findKey(Exiv2::ExifKey(key));
-  if (found == exif.end() || found->count() == 0) return std::nullopt;
-  const Exiv2::Rational value = found->toRational(0);
+  if (found == exif.end() || static_cast<int>(found->count()) <= index) return std::nullopt;
+  const Exiv2::Rational value = found->toRational(index);
   if (value.second == 0) return std::nullopt;
   return static_cast<double>(value.first) / static_cast<double>(value.second);
 }
@@ -51,6 +51,29 @@ std::string CameraKey(const Exiv2::ExifData& exif, ImageSize size) {
          std::to_string(size.height);
 }
 
+// Degrees, minutes and seconds; minutes and seconds may be missing.
+std::optional<double> Angle(const Exiv2::ExifData& exif, const char* key) {
+  const auto degrees = Number(exif, key, 0);
+  if (!degrees) return std::nullopt;
+  return *degrees + Number(exif, key, 1).value_or(0) / 60 + Number(exif, key, 2).value_or(0) / 3600;
+}
+
+std::optional<GeoPosition> Gps(const Exiv2::ExifData& exif) {
+  const auto latitude = Angle(exif, "Exif.GPSInfo.GPSLatitude");
+  const auto longitude = Angle(exif, "Exif.GPSInfo.GPSLongitude");
+  if (!latitude || !longitude) return std::nullopt;
+  GeoPosition gps;
+  const bool is_south = Text(exif, "Exif.GPSInfo.GPSLatitudeRef") == "S";
+  const bool is_west = Text(exif, "Exif.GPSInfo.GPSLongitudeRef") == "W";
+  const bool is_below = Number(exif, "Exif.GPSInfo.GPSAltitudeRef").value_or(0) == 1;
+  const double altitude = Number(exif, "Exif.GPSInfo.GPSAltitude").value_or(0);
+  gps.latitude_deg = is_south ? -*latitude : *latitude;
+  gps.longitude_deg = is_west ? -*longitude : *longitude;
+  gps.altitude_m = is_below ? -altitude : altitude;
+  if (!IsLegal(gps)) return std::nullopt;
+  return gps;
+}
+
 }  // namespace
 
 ExifInfo ReadExif(const std::filesystem::path& path, ImageSize size) {
@@ -75,6 +98,7 @@ ExifInfo ReadExif(const std::filesystem::path& path, ImageSize size) {
   info.focal_length_px = FocalLength(exif, size);
   const double orientation = Number(exif, "Exif.Image.Orientation").value_or(1);
   if (orientation >= 1 && orientation <= 8) info.orientation = static_cast<int>(orientation);
+  info.gps = Gps(exif);
   info.camera_key = CameraKey(exif, size);
   return info;
 }

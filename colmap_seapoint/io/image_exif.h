@@ -1,10 +1,11 @@
-// What EXIF tells about the camera. For image_file.cc only.
+// What EXIF tells about the camera and its place. For image_file.cc only.
 #pragma once
 
 #include <filesystem>
 #include <optional>
 #include <string>
 
+#include "colmap_seapoint/base/geodesy.h"
 #include "colmap_seapoint/io/image_codecs.h"
 
 namespace colmap_seapoint {
@@ -12,6 +13,7 @@ namespace colmap_seapoint {
 struct ExifInfo {
   std::optional<double> focal_length_px;
   int orientation = 1;
+  std::optional<GeoPosition> gps;
   std::string camera_key;
 };
 

@@ -247,6 +247,7 @@ ImageInfo ReadImageInfo(const std::filesystem::path& path) {
   info.height = size.height;
   info.focal_length_px = exif.focal_length_px;
   info.exif_orientation = exif.orientation;
+  info.gps = exif.gps;
   info.camera_key = std::move(exif.camera_key);
   return info;
 }

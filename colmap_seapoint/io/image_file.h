@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "colmap_seapoint/base/geodesy.h"
 #include "colmap_seapoint/base/image.h"
 
 namespace colmap_seapoint {
@@ -29,6 +30,7 @@ struct ImageInfo {
   int height = 0;
   std::optional<double> focal_length_px;  // from EXIF, by COLMAP's rules, in pixels of this picture
   int exif_orientation = 1;               // 1..8; not 1: the picture is stored turned
+  std::optional<GeoPosition> gps;         // from EXIF; altitude 0 when it tells none
   std::string camera_key;  // make, model, focal length, size: pictures of one camera share it
 };
 

@@ -35,6 +35,7 @@ class SqlStatement {
   }
 
   int64_t Int(int column) const { return sqlite3_column_int64(statement_, column); }
+  double Real(int column) const { return sqlite3_column_double(statement_, column); }
   bool IsNull(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_NULL; }
   bool IsInteger(int column) const {
     return sqlite3_column_type(statement_, column) == SQLITE_INTEGER;

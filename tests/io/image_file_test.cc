@@ -172,6 +172,33 @@ TEST(ImageInfo, FocalLengthByColmapsRules) {
   EXPECT_FALSE(ReadImageInfo(dir / "a.jpg").focal_length_px);
 }
 
+TEST(ImageInfo, GpsPosition) {
+  const TempDir dir;
+  WriteImage(dir / "a.jpg", MakeColor(40, 30));
+  EXPECT_FALSE(ReadImageInfo(dir / "a.jpg").gps);
+  AddExif(dir / "a.jpg", {{"Exif.GPSInfo.GPSLatitude", "43/1 30/1 3600/100"},
+                          {"Exif.GPSInfo.GPSLatitudeRef", "N"}});
+  EXPECT_FALSE(ReadImageInfo(dir / "a.jpg").gps);
+  AddExif(dir / "a.jpg",
+          {{"Exif.GPSInfo.GPSLongitude", "5/1 15/1 0/1"}, {"Exif.GPSInfo.GPSLongitudeRef", "E"}});
+  auto gps = ReadImageInfo(dir / "a.jpg").gps;
+  ASSERT_TRUE(gps);
+  EXPECT_NEAR(gps->latitude_deg, 43.51, 1e-9);
+  EXPECT_NEAR(gps->longitude_deg, 5.25, 1e-9);
+  EXPECT_EQ(gps->altitude_m, 0);
+  AddExif(dir / "a.jpg", {{"Exif.GPSInfo.GPSLatitudeRef", "S"},
+                          {"Exif.GPSInfo.GPSLongitudeRef", "W"},
+                          {"Exif.GPSInfo.GPSAltitude", "125/10"},
+                          {"Exif.GPSInfo.GPSAltitudeRef", "1"}});
+  gps = ReadImageInfo(dir / "a.jpg").gps;
+  ASSERT_TRUE(gps);
+  EXPECT_NEAR(gps->latitude_deg, -43.51, 1e-9);
+  EXPECT_NEAR(gps->longitude_deg, -5.25, 1e-9);
+  EXPECT_NEAR(gps->altitude_m, -12.5, 1e-9);
+  AddExif(dir / "a.jpg", {{"Exif.GPSInfo.GPSLatitude", "95/1 0/1 0/1"}});
+  EXPECT_FALSE(ReadImageInfo(dir / "a.jpg").gps);
+}
+
 TEST(ImageInfo, OrientationIsToldButNotApplied) {
   const TempDir dir;
   for (const char* name : {"a.jpg", "a.tif", "a.png"}) {

@@ -1,0 +1,30 @@
+#include "colmap_seapoint/base/geodesy.h"
+
+#include <cmath>
+
+namespace colmap_seapoint {
+namespace {
+
+constexpr double kEquatorRadius = 6378137.0;  // WGS84
+constexpr double kEccentricity2 = 6.69437999014e-3;
+constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
+
+}  // namespace
+
+bool IsLegal(const GeoPosition& position) {
+  return std::abs(position.latitude_deg) <= 90 && std::abs(position.longitude_deg) <= 360 &&
+         std::isfinite(position.altitude_m);
+}
+
+Eigen::Vector3d LocalEastNorthUp(const GeoPosition& position, const GeoPosition& origin) {
+  const double latitude = origin.latitude_deg * kRadiansPerDegree;
+  const double w2 = 1 - kEccentricity2 * std::sin(latitude) * std::sin(latitude);
+  const double across = kEquatorRadius / std::sqrt(w2);  // prime vertical
+  const double along = kEquatorRadius * (1 - kEccentricity2) / (w2 * std::sqrt(w2));  // meridian
+  const double east_deg = std::remainder(position.longitude_deg - origin.longitude_deg, 360.0);
+  const double north_deg = position.latitude_deg - origin.latitude_deg;
+  return {east_deg * kRadiansPerDegree * across * std::cos(latitude),
+          north_deg * kRadiansPerDegree * along, position.altitude_m - origin.altitude_m};
+}
+
+}  // namespace colmap_seapoint
