@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 // --matcher auto: up to this many pictures, every pair is tried.
 constexpr size_t kMaxImagesForAllPairs = 50;
 // Raise it whenever the same options give other results than before.
-constexpr char kMatchingVersion[] = "2";
+constexpr char kMatchingVersion[] = "3";
 constexpr char kMapperVersion[] = "7";
 constexpr char kDensificationVersion[] = "1";
 

@@ -125,7 +125,7 @@ RunReport MatchSequentially(const SequentialMatcherOptions& options) {
                  std::copy_if(sequential.begin(), sequential.end(), std::back_inserter(further),
                               [&](const ImagePair& pair) { return is_next.count(pair) == 0; });
                  MatchPairs(next, options.matching, 0, options.run.num_threads, database, report);
-                 MatchPairs(further, DemandingOptions(options.matching), kDemandingInlierShare,
+                 MatchPairs(further, DemandingOptions(options.matching), kMinOverlapShare,
                             options.run.num_threads, database, report);
                });
 }
@@ -134,8 +134,8 @@ RunReport MatchExhaustively(const ExhaustiveMatcherOptions& options) {
   return Match(
       "exhaustive_matcher", options,
       [&](const std::vector<DatabaseImage>& images, ColmapDatabase* database, RunReport* report) {
-        MatchPairs(ExhaustivePairs(images), options.matching, 0, options.run.num_threads, database,
-                   report);
+        MatchPairs(ExhaustivePairs(images), options.matching, kMinOverlapShare,
+                   options.run.num_threads, database, report);
       });
 }
 
@@ -145,7 +145,7 @@ RunReport MatchSpatially(const SpatialMatcherOptions& options) {
                  SortNaturally(&images);
                  const auto placed = PlaceImages(images, options.pairs, options.image_path,
                                                  options.database_path, *database, report);
-                 MatchPairs(SpatialPairs(placed, options.pairs), options.matching, 0,
+                 MatchPairs(SpatialPairs(placed, options.pairs), options.matching, kMinOverlapShare,
                             options.run.num_threads, database, report);
                });
 }
