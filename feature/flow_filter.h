@@ -16,7 +16,7 @@ struct FlowFilterOptions {
   double max_norm_difference = 0.12;
   double min_tolerance = 4;
   double max_slip = 1.5;
-  double max_slip_ratio = 2.6;
+  double max_slip_ratio = 2.3;
 
   void Bind(OptionTable* table);
 };

@@ -12,9 +12,9 @@ namespace colmap_seapoint {
 
 struct GuidedMatcherOptions {
   bool enabled = true;
-  int max_distance = 90;
+  int max_distance = 92;
   double max_slip = 1.5;
-  double max_slip_ratio = 10;
+  double max_slip_ratio = 12;
   double max_error = 1.5;
 
   void Bind(OptionTable* table);
