@@ -11,15 +11,14 @@
 
 #include "feature/hamming_matcher.h"
 #include "feature/local_flow.h"
+#include "feature/overlap_share.h"
 #include "feature/seapoint_tree.h"
 
 namespace colmap_seapoint {
 
 namespace {
 
-// Inliers that make a flow. Pictures of different places can agree on 25 by chance, and guided
-// matching would make more of them.
-constexpr size_t kMinFlow = 40;
+constexpr size_t kMinFlow = 20;  // inliers that make a flow
 
 struct Candidate {
   int distance;
@@ -105,6 +104,10 @@ FeatureMatches MatchGuided(const Camera& camera1, const Features& features1, con
                            const TwoViewGeometry& geometry, const GuidedMatcherOptions& options) {
   if (!options.enabled || geometry.inliers.size() < kMinFlow) return {};
   if (!geometry.E && !geometry.F) return {};
+  // Chance agreement between pictures of different places must not be made more of.
+  if (OverlapShare(features1.points, features2.points, geometry.inliers) < kMinOverlapShare) {
+    return {};
+  }
   const EpipolarError error(camera1, features1.points, camera2, features2.points, geometry);
   Taken taken(features1, features2, matches);
   LocalFlow flow(features1.points, features2.points, geometry.inliers);

@@ -25,8 +25,9 @@ struct GuidedMatcherOptions {
 // (picture_turn.h). A point's place in picture 2 is predicted from the inliers around it
 // (local_flow.h); candidates lie within max_slip, or max_slip_ratio times what is usual there,
 // whichever is more, and within max_error of the epipolar line. Of all of them the smallest Hamming
-// distance wins first (ties: the smaller indices). Nothing is added to a pair of fewer than 40
-// inliers, or without E and F. O(n log n).
+// distance wins first (ties: the smaller indices). Nothing is added to a pair of fewer than 20
+// inliers, or whose inliers do not fill the overlap they imply (overlap_share.h), or without E and F.
+// O(n log n).
 FeatureMatches MatchGuided(const Camera& camera1, const Features& features1, const Camera& camera2,
                            const Features& features2, const FeatureMatches& matches,
                            const TwoViewGeometry& geometry, const GuidedMatcherOptions& options);

@@ -22,12 +22,6 @@ void MatchPairs(const std::vector<ImagePair>& pairs, const SeaPointMatchingOptio
                 double min_overlap_share, int num_threads, ColmapDatabase* database,
                 RunReport* report);
 
-// Of pairs that need not overlap. On synthetic dives with exact truth, several in a hundred pairs
-// without any overlap reach 15 inliers, and a few 90 and more, but none matches 10 % of the overlap
-// it implies. Of the pairs that overlap by 20 %, nearly all match more. One false link folds a
-// model.
-inline constexpr double kMinOverlapShare = 0.12;
-
 // The same, but with at least 30 inliers: for pairs by the thousand that were chosen for looking
 // alike.
 SeaPointMatchingOptions DemandingOptions(const SeaPointMatchingOptions& options);

@@ -7,6 +7,7 @@
 #include "colmap_seapoint/base/natural_order.h"
 #include "colmap_seapoint/commands/loop_pairs.h"
 #include "colmap_seapoint/commands/match_pairs.h"
+#include "feature/overlap_share.h"
 
 namespace colmap_seapoint {
 namespace {

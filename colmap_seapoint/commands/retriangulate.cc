@@ -12,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Pixels; 4 in COLMAP.
-constexpr char kMaxError[] = "2";
+constexpr char kMaxError[] = "1.5";
 constexpr const char* kErrorLimits[] = {"Mapper.filter_max_reproj_error",
                                         "Mapper.tri_complete_max_reproj_error",
                                         "Mapper.tri_merge_max_reproj_error"};

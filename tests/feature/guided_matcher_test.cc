@@ -131,7 +131,7 @@ TEST(GuidedMatcherTest, AddsNothingWithoutGeometry) {
   unknown.geometry.E.reset();
   EXPECT_TRUE(Guide(unknown).empty());
   Scene few = scene;
-  few.geometry.inliers.resize(39);
+  few.geometry.inliers.resize(19);
   EXPECT_TRUE(Guide(few).empty());
   Scene empty = scene;
   empty.features1 = Features();

@@ -32,6 +32,7 @@ Case Parse(const uint8_t* data) {
   c.options.nms_radius = 1 + data[5] % 20;
   c.options.min_num_features = 1 + data[6];
   c.options.max_num_features = c.options.min_num_features + data[7];
+  c.options.light_balance = 0;  // the definition knows the paper's measures only
   c.border = data[8] % 40;
   c.num_threads = 1 + data[9] % 5;
   if (data[10] % 2 == 1) c.mask = GrayImage(c.picture.width, c.picture.height);
