@@ -19,6 +19,9 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr size_t kMinFlow = 20;  // inliers that make a flow
+// Chance agreement between pictures of different places must not be made more of; in murk, guided
+// matching is what brings true pairs above kMinOverlapShare.
+constexpr double kMinShareOfOverlap = 0.5 * kMinOverlapShare;
 
 struct Candidate {
   int distance;
@@ -104,8 +107,7 @@ FeatureMatches MatchGuided(const Camera& camera1, const Features& features1, con
                            const TwoViewGeometry& geometry, const GuidedMatcherOptions& options) {
   if (!options.enabled || geometry.inliers.size() < kMinFlow) return {};
   if (!geometry.E && !geometry.F) return {};
-  // Chance agreement between pictures of different places must not be made more of.
-  if (OverlapShare(features1.points, features2.points, geometry.inliers) < kMinOverlapShare) {
+  if (OverlapShare(features1.points, features2.points, geometry.inliers) < kMinShareOfOverlap) {
     return {};
   }
   const EpipolarError error(camera1, features1.points, camera2, features2.points, geometry);
