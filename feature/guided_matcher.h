@@ -12,9 +12,9 @@ namespace colmap_seapoint {
 
 struct GuidedMatcherOptions {
   bool enabled = true;
-  int max_distance = 92;
+  int max_distance = 96;
   double max_slip = 1.5;
-  double max_slip_ratio = 12;
+  double max_slip_ratio = 15;
   double max_error = 1.5;
 
   void Bind(OptionTable* table);

@@ -23,7 +23,7 @@ struct SeaPointExtractionOptions {
   double harris_k = 0.04;
   int nms_radius = 0;
   std::string descriptor = "rbrief";  // or "sift"; see Features
-  double light_balance = 0.65;
+  double light_balance = 0.5;
 
   void Bind(OptionTable* table);
   // Rules between options: "" or the whole sentence. Ranges are the table's.
