@@ -72,9 +72,7 @@ SubprocessResult AdjustByMapper(const ColmapProgram& colmap, const SparseModel& 
                                         reduced.string(),
                                         "--output_path",
                                         adjustment.output_path.string()};
-  for (const auto& [name, value] : adjustment.options) {
-    arguments.insert(arguments.end(), {"--" + name, value});
-  }
+  AppendOptions(adjustment.options, &arguments);
   const auto result = RunSubprocess(colmap.path, arguments, adjustment.log_path, {});
   fs::remove_all(reduced, error);
   return result;

@@ -61,6 +61,12 @@ ColmapProgram FindColmap(const std::string& colmap) {
               "does not answer 'mapper -h' as COLMAP does (" + result.Text() + ")", kInstallRemedy);
 }
 
+void AppendOptions(const MapperOptions& options, std::vector<std::string>* arguments) {
+  for (const auto& [name, value] : options) {
+    arguments->insert(arguments->end(), {"--" + name, value});
+  }
+}
+
 MapperOptions OptionsOfRound(const ColmapProgram& colmap, bool is_first_round, int random_seed,
                              const MapperOptions& user_options) {
   MapperOptions options;

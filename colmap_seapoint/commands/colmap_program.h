@@ -21,6 +21,9 @@ struct ColmapProgram {
 // names move between versions. Throws Error when it is missing or does not answer.
 ColmapProgram FindColmap(const std::string& colmap);
 
+// "--name value" of every option, behind the arguments there are.
+void AppendOptions(const MapperOptions& options, std::vector<std::string>* arguments);
+
 // What the mapper is given in a round: what suits SeaPoints (of later rounds: relaxed) as far as
 // this version knows it, then the user's options, which win. Throws UsageError for one of the
 // user's that this mapper does not know.

@@ -28,9 +28,7 @@ std::vector<std::string> Arguments(const ColmapProgram& colmap, const Triangulat
   for (const char* limit : kErrorLimits) {
     if (colmap.HasMapperOption(limit)) options.emplace(limit, kMaxError);
   }
-  for (const auto& [name, value] : options) {
-    arguments.insert(arguments.end(), {"--" + name, value});
-  }
+  AppendOptions(options, &arguments);
   return arguments;
 }
 

@@ -182,9 +182,7 @@ class MapperRounds {
       WriteTextFile(list, names);
       arguments.insert(arguments.end(), {"--image_list_path", list.string()});
     }
-    for (const auto& [name, value] : trial.options) {
-      arguments.insert(arguments.end(), {"--" + name, value});
-    }
+    AppendOptions(trial.options, &arguments);
     return arguments;
   }
 
