@@ -27,8 +27,8 @@ namespace fs = std::filesystem;
 // --matcher auto: up to this many pictures, every pair is tried.
 constexpr size_t kMaxImagesForAllPairs = 50;
 // Raise it whenever the same options give other results than before.
-constexpr char kMatchingVersion[] = "3";
-constexpr char kMapperVersion[] = "7";
+constexpr char kMatchingVersion[] = "4";
+constexpr char kMapperVersion[] = "8";
 constexpr char kDensificationVersion[] = "1";
 
 std::string HashText(const std::string& text) { return HashBytes(text.data(), text.size()); }
