@@ -2,7 +2,7 @@
 // While the mapper held the distortion, what the lens bends most, in the corners, lay too far off to
 // be taken; once the lens is known, it comes in. And what then lies more than kMaxError off is another
 // corner beside the right one: SeaPoints lie right to 0.1 to 0.4 pixels. On the demo survey the
-// distortion k1 that the next adjustment finds comes from 1.5 % beside the truth to 0.1 %.
+// distortion k1 that the next adjustment finds comes from 1.5 % beside the truth to 0.4 %.
 #pragma once
 
 #include <filesystem>
