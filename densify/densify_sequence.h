@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,14 +15,20 @@
 
 namespace colmap_seapoint {
 
-// Where pictures and SeaPoints come from; image_idx is the position in SparseModel::images.
-// Called from several threads at once.
+// Where pictures, SeaPoints and matches come from; image_idx is the position in
+// SparseModel::images. What is stored is read; only what is not is worked out anew.
 class PictureSource {
  public:
   virtual ~PictureSource() = default;
   // Throws Error for a picture that is missing, unreadable or of another size than its camera.
+  // Called from several threads at once; the others are not.
   virtual ColorImage ReadColor(int image_idx) = 0;
-  virtual Features ReadSeaPoints(int image_idx) = 0;
+  // nullopt: none are stored. Throws Error for damaged ones.
+  virtual std::optional<Features> ReadSeaPoints(int image_idx) = 0;
+  virtual Features FindSeaPoints(const GrayImage& picture) = 0;
+  // Indices into the points of ReadSeaPoints. nullopt: none are stored, or either picture's
+  // SeaPoints are not.
+  virtual std::optional<FeatureMatches> ReadMatches(int image_idx1, int image_idx2) = 0;
   virtual FeatureMatches Match(const Features& features1, const Features& features2) = 0;
 };
 

@@ -48,19 +48,39 @@ std::shared_ptr<const Picture> PictureCache::Get(int image_idx) {
   }
 }
 
+Features PictureCache::ObtainSeaPoints(int image_idx) {
+  try {
+    if (auto stored = source_->ReadSeaPoints(image_idx)) return std::move(*stored);
+  } catch (const Error& error) {
+    LeaveOut(image_idx, error.Finding());
+    return {};
+  }
+  const auto picture = Get(image_idx);
+  return picture ? source_->FindSeaPoints(picture->gray) : Features();
+}
+
 std::shared_ptr<const Features> PictureCache::GetSeaPoints(int image_idx) {
   for (const auto& [idx, features] : features_) {
     if (idx == image_idx) return features;
   }
-  auto features = std::make_shared<Features>();
-  try {
-    *features = source_->ReadSeaPoints(image_idx);
-  } catch (const Error& error) {
-    LeaveOut(image_idx, error.Finding());
-  }
+  auto features = std::make_shared<const Features>(ObtainSeaPoints(image_idx));
   if (features_.size() >= kMaxFeatures) features_.pop_front();
   features_.emplace_back(image_idx, features);
   return features;
+}
+
+std::shared_ptr<const FeatureMatches> PictureCache::GetMatches(int image_idx1, int image_idx2) {
+  const std::pair<int, int> pair(image_idx1, image_idx2);
+  for (const auto& [known, matches] : matches_) {
+    if (known == pair) return matches;
+  }
+  auto stored = source_->ReadMatches(image_idx1, image_idx2);
+  auto matches = std::make_shared<const FeatureMatches>(
+      stored ? std::move(*stored)
+             : source_->Match(*GetSeaPoints(image_idx1), *GetSeaPoints(image_idx2)));
+  if (matches_.size() >= kMaxMatches) matches_.pop_front();
+  matches_.emplace_back(pair, matches);
+  return matches;
 }
 
 void PictureCache::LeaveOut(int image_idx, const std::string& reason) {

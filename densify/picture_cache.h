@@ -1,5 +1,5 @@
-// The few pictures and SeaPoints that the present pair and the next ones need, read ahead in the
-// background. Memory does not grow with the number of pictures.
+// The few pictures, SeaPoints and matches that the present pair and the next ones need; pictures
+// are read ahead in the background. Memory does not grow with the number of pictures.
 #pragma once
 
 #include <deque>
@@ -26,8 +26,11 @@ class PictureCache {
 
   // nullptr when the picture cannot be read: the reason goes to LeftOut(), once.
   std::shared_ptr<const Picture> Get(int image_idx);
-  // Empty features when they cannot be had, and the reason likewise.
+  // Empty features when they cannot be had, and the reason likewise. Where none are stored, they
+  // are found in the picture, which is decoded once for that and for densification.
   std::shared_ptr<const Features> GetSeaPoints(int image_idx);
+  // idx1 in image_idx1's SeaPoints, idx2 in image_idx2's.
+  std::shared_ptr<const FeatureMatches> GetMatches(int image_idx1, int image_idx2);
   // Starts reading in the background, if it is not there or under way.
   void Prefetch(int image_idx);
 
@@ -37,14 +40,17 @@ class PictureCache {
   using PendingPicture = std::shared_future<std::shared_ptr<const Picture>>;
   static constexpr size_t kMaxPictures = 5;
   static constexpr size_t kMaxFeatures = 32;
+  static constexpr size_t kMaxMatches = 32;
 
   PendingPicture Start(int image_idx);
+  Features ObtainSeaPoints(int image_idx);
   void LeaveOut(int image_idx, const std::string& reason);
 
   PictureSource* const source_;
   // By image_idx, least recently used first.
   std::deque<std::pair<int, PendingPicture>> pictures_;
   std::deque<std::pair<int, std::shared_ptr<const Features>>> features_;
+  std::deque<std::pair<std::pair<int, int>, std::shared_ptr<const FeatureMatches>>> matches_;
   std::vector<LeftOutPicture> left_out_;
 };
 

@@ -26,7 +26,6 @@ SequenceState::SequenceState(const SparseModel& model, std::vector<int> order,
       options_(options),
       num_threads_(num_threads),
       sink_(std::move(sink)),
-      source_(source),
       cache_(source),
       covisible_(CovisiblePictures(model, order_)) {}
 
@@ -52,8 +51,8 @@ std::shared_ptr<const Features> SequenceState::SeaPointsAt(int position) {
   return cache_.GetSeaPoints(ImageIdxAt(position));
 }
 
-FeatureMatches SequenceState::Match(int position1, int position2) {
-  return source_->Match(*SeaPointsAt(position1), *SeaPointsAt(position2));
+std::shared_ptr<const FeatureMatches> SequenceState::MatchesOf(int position1, int position2) {
+  return cache_.GetMatches(ImageIdxAt(position1), ImageIdxAt(position2));
 }
 
 int SequenceState::SelectSecond(int first) {
@@ -67,10 +66,10 @@ int SequenceState::SelectSecond(int first) {
   const int end = std::min(NumPictures(), first + 1 + kMaxSecondTries);
   for (int second = first + 1; second < end; ++second) {
     if (!cache_.Get(ImageIdxAt(second))) continue;
-    const FeatureMatches matches = Match(first, second);
-    if (static_cast<int>(matches.size()) < options_.min_num_seeds) continue;
+    const auto matches = MatchesOf(first, second);
+    if (static_cast<int>(matches->size()) < options_.min_num_seeds) continue;
     const double motion = MeanMotion(SeaPointsAt(first)->points, SeaPointsAt(second)->points,
-                                     matches, LongerSide(first));
+                                     *matches, LongerSide(first));
     if (motion >= options_.min_mean_motion &&
         MedianParallaxDeg(model_, ImageAt(first), ImageAt(second)) >= kMinParallaxDeg) {
       return second;
@@ -83,17 +82,13 @@ int SequenceState::SelectSecond(int first) {
 
 double SequenceState::InterpairOverlap(int first, int candidate) {
   const auto points = SeaPointsAt(candidate);
-  const FeatureMatches matches = Match(first, candidate);
-  const std::vector<SeaPointLabel>& labels = previous_labels_;
+  const auto matches = MatchesOf(first, candidate);
   const double radius = options_.influence_radius * LongerSide(candidate);
-  return MakeInfluenceMask(CellsAt(candidate), points->points, matches, labels, radius)
+  return MakeInfluenceMask(CellsAt(candidate), points->points, *matches, previous_labels_, radius)
       .OverlapRate();
 }
 
 int SequenceState::SelectNextFirst(int first, int second) {
-  for (int ahead = 1; ahead <= 2 && second + ahead < NumPictures(); ++ahead) {
-    cache_.Prefetch(ImageIdxAt(second + ahead));
-  }
   const int next = colmap_seapoint::SelectNextFirst(
       second, NumPictures(), options_.max_overlap,
       [&](int candidate) { return InterpairOverlap(first, candidate); });
@@ -112,10 +107,10 @@ SequenceState::Overlap SequenceState::AssessOverlap(int first) {
   const double radius = options_.influence_radius * LongerSide(first);
   overlap.labels.assign(points->points.size(), SeaPointLabel::kNA);
   if (previous_first_ >= 0) {
-    const FeatureMatches matches = Match(previous_first_, first);
+    const auto matches = MatchesOf(previous_first_, first);
     const InfluenceMask mask =
-        MakeInfluenceMask(cells, points->points, matches, previous_labels_, radius);
-    overlap.labels = LabelSeaPoints(mask, points->points, matches, previous_labels_, radius);
+        MakeInfluenceMask(cells, points->points, *matches, previous_labels_, radius);
+    overlap.labels = LabelSeaPoints(mask, points->points, *matches, previous_labels_, radius);
     overlap.rate = mask.OverlapRate();
     overlap.closed = mask.marked;
   }
@@ -142,7 +137,7 @@ std::vector<PixelPair> SequenceState::SeedsFromMatches(int first, int second,
                                                        const std::vector<SeaPointLabel>& labels) {
   const auto points1 = SeaPointsAt(first), points2 = SeaPointsAt(second);
   std::vector<PixelPair> seeds;
-  for (const FeatureMatch& match : Match(first, second)) {
+  for (const FeatureMatch& match : *MatchesOf(first, second)) {
     if (!labels.empty() && labels[match.idx1] == SeaPointLabel::kOA) continue;
     const SeaPoint& a = points1->points[match.idx1];
     const SeaPoint& b = points2->points[match.idx2];
@@ -217,6 +212,10 @@ bool SequenceState::RunPair(int first, int second, const Overlap& overlap,
 }
 
 void SequenceState::DensifyNewAreas(int first, int second) {
+  // Decoded while this pair is densified: one of them will most often start the next pair.
+  for (int ahead = 1; ahead <= 2 && second + ahead < NumPictures(); ++ahead) {
+    cache_.Prefetch(ImageIdxAt(second + ahead));
+  }
   PairReport report = NewReport(first, second, "sequence");
   const Overlap overlap = AssessOverlap(first);
   for (const SeaPointLabel label : overlap.labels) {

@@ -53,7 +53,7 @@ class SequenceState {
   CellGrid CellsAt(int position) const;
 
   std::shared_ptr<const Features> SeaPointsAt(int position);
-  FeatureMatches Match(int position1, int position2);
+  std::shared_ptr<const FeatureMatches> MatchesOf(int position1, int position2);
   double InterpairOverlap(int first, int candidate);
   Overlap AssessOverlap(int first);
   std::vector<PixelPair> SeedsFromMatches(int first, int second,
@@ -68,7 +68,6 @@ class SequenceState {
   const PartialDensificationOptions& options_;
   const int num_threads_;
   const std::function<void(const PartialCloud&)> sink_;
-  PictureSource* const source_;
   PictureCache cache_;
 
   int previous_first_ = -1;

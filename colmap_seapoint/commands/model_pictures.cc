@@ -1,6 +1,10 @@
 #include "colmap_seapoint/commands/model_pictures.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/io/image_file.h"
 
 namespace colmap_seapoint {
@@ -9,10 +13,13 @@ ModelPictures::ModelPictures(const SparseModel& model, const std::filesystem::pa
                              const std::string& database_path,
                              const SeaPointExtractionOptions& extraction,
                              const SeaPointMatchingOptions& matching)
-    : model_(model), image_path_(image_path), extraction_(extraction), matching_(matching) {
+    : model_(model),
+      image_path_(image_path),
+      extraction_(extraction),
+      matching_(matching),
+      has_stored_(model.images.size()) {
   if (database_path.empty()) return;
   database_.emplace(database_path, ColmapDatabase::Mode::kReadOnly);
-  store_.emplace(&*database_);
   for (const DatabaseImage& image : database_->ReadImages()) {
     if (database_->FeaturesFingerprint(image.image_id)) database_ids_[image.name] = image.image_id;
   }
@@ -56,14 +63,42 @@ ColorImage ModelPictures::ReadColor(int image_idx) {
               "give the pictures that the model was made from");
 }
 
-Features ModelPictures::ReadSeaPoints(int image_idx) {
+std::optional<Features> ModelPictures::ReadSeaPoints(int image_idx) {
   const auto id = database_ids_.find(ImageAt(image_idx).name);
-  if (id != database_ids_.end()) {
-    const auto features = store_->Read(id->second);
-    if (features != nullptr) return *features;
-  }
-  const GrayImage picture = ReadGrayImage(PathOf(image_idx));
+  if (id == database_ids_.end()) return std::nullopt;
+  auto features = database_->ReadFeatures(id->second);
+  has_stored_.at(static_cast<size_t>(image_idx)) = features.has_value();
+  return features;
+}
+
+Features ModelPictures::FindSeaPoints(const GrayImage& picture) {
   return ExtractFeatures(picture, GrayImage(), extraction_).features;
+}
+
+bool ModelPictures::HasStoredSeaPoints(int image_idx) {
+  std::optional<bool>& known = has_stored_.at(static_cast<size_t>(image_idx));
+  if (!known) known = ReadSeaPoints(image_idx).has_value();
+  return *known;
+}
+
+std::optional<FeatureMatches> ModelPictures::ReadMatches(int image_idx1, int image_idx2) {
+  try {
+    if (!HasStoredSeaPoints(image_idx1) || !HasStoredSeaPoints(image_idx2)) return std::nullopt;
+    const uint32_t id1 = database_ids_.at(ImageAt(image_idx1).name);
+    const uint32_t id2 = database_ids_.at(ImageAt(image_idx2).name);
+    const ImagePair pair = std::minmax(id1, id2);
+    const bool verified = database_->HasMatches(pair);
+    FeatureMatches matches =
+        verified ? database_->ReadTwoViewGeometry(pair).inliers : database_->ReadMatches(pair);
+    if (!verified && matches.empty()) return std::nullopt;
+    if (id1 > id2) {
+      for (FeatureMatch& match : matches) std::swap(match.idx1, match.idx2);
+    }
+    return matches;
+  } catch (const Error& error) {
+    LogWarning(std::string(error.what()) + "; the pair is matched again");
+    return std::nullopt;
+  }
 }
 
 FeatureMatches ModelPictures::Match(const Features& features1, const Features& features2) {

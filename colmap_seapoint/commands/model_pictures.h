@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 #include "colmap_seapoint/base/sparse_model.h"
-#include "colmap_seapoint/commands/feature_store.h"
 #include "colmap_seapoint/io/colmap_database.h"
 #include "densify/densify_sequence.h"
 #include "feature/extract_features.h"
@@ -16,8 +16,9 @@
 
 namespace colmap_seapoint {
 
-// `model` outlives it. SeaPoints come from the database, by image name, and are found in the
-// picture when it has none of ours (or is not given).
+// `model` outlives it. SeaPoints come from the database, by image name, where it is given and has
+// ours. Matches are the verified ones of the database (the raw ones of a pair that nothing has
+// verified) where it has both pictures' SeaPoints and the pair.
 class ModelPictures : public PictureSource {
  public:
   ModelPictures(const SparseModel& model, const std::filesystem::path& image_path,
@@ -30,7 +31,10 @@ class ModelPictures : public PictureSource {
   int NumInDatabase() const { return num_in_database_; }
 
   ColorImage ReadColor(int image_idx) override;
-  Features ReadSeaPoints(int image_idx) override;
+  std::optional<Features> ReadSeaPoints(int image_idx) override;
+  Features FindSeaPoints(const GrayImage& picture) override;
+  // Damaged matches are as good as none; a warning says so.
+  std::optional<FeatureMatches> ReadMatches(int image_idx1, int image_idx2) override;
   FeatureMatches Match(const Features& features1, const Features& features2) override;
 
  private:
@@ -38,14 +42,16 @@ class ModelPictures : public PictureSource {
   std::filesystem::path PathOf(int image_idx) const;
   // "" or the reason.
   std::string CheckSize(int image_idx, int width, int height) const;
+  // Whether the database has SeaPoints of ours that ReadSeaPoints can return.
+  bool HasStoredSeaPoints(int image_idx);
 
   const SparseModel& model_;
   std::filesystem::path image_path_;
   SeaPointExtractionOptions extraction_;
   SeaPointMatchingOptions matching_;
   std::optional<ColmapDatabase> database_;
-  std::optional<FeatureStore> store_;
   std::unordered_map<std::string, uint32_t> database_ids_;  // of images with SeaPoints
+  std::vector<std::optional<bool>> has_stored_;             // by image_idx, once known
   int num_in_database_ = 0;
 };
 

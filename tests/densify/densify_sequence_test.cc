@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <map>
+#include <mutex>
+#include <optional>
 #include <random>
 #include <set>
 
@@ -39,12 +42,35 @@ class Strip : public PictureSource {
 
   ColorImage ReadColor(int image_idx) override {
     if (image_idx == unreadable_) throw Error("a.jpg", "is cut short", "copy it again");
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++num_decoded[image_idx];
     return pictures_[static_cast<size_t>(image_idx)];
   }
-  Features ReadSeaPoints(int image_idx) override {
+  std::optional<Features> ReadSeaPoints(int image_idx) override {
+    if (!stores_seapoints) return std::nullopt;
     return features_[static_cast<size_t>(image_idx)];
   }
+  // Knows the picture by its pixels.
+  Features FindSeaPoints(const GrayImage& picture) override {
+    ++num_found;
+    for (size_t i = 0; i < pictures_.size(); ++i) {
+      const GrayImage gray = GrayOf(pictures_[i]);
+      size_t same = 0;
+      while (same < gray.data.size() && std::abs(gray.data[same] - picture.data[same]) <= 1) ++same;
+      if (same == gray.data.size()) return features_[i];
+    }
+    ADD_FAILURE() << "no picture of the strip";
+    return {};
+  }
+  std::optional<FeatureMatches> ReadMatches(int image_idx1, int image_idx2) override {
+    ++num_asked[{std::min(image_idx1, image_idx2), std::max(image_idx1, image_idx2)}];
+    if (!stores_matches) return std::nullopt;
+    --num_matched;
+    return Match(features_[static_cast<size_t>(image_idx1)],
+                 features_[static_cast<size_t>(image_idx2)]);
+  }
   FeatureMatches Match(const Features& features1, const Features& features2) override {
+    ++num_matched;
     std::map<Descriptor, uint32_t> second;
     for (uint32_t j = 0; j < features2.points.size(); ++j) second[features2.descriptors[j]] = j;
     FeatureMatches matches;
@@ -58,6 +84,11 @@ class Strip : public PictureSource {
   void MakeUnreadable(int image_idx) { unreadable_ = image_idx; }
   const SparseModel& Model() const { return model_; }
   const World& GetWorld() const { return world_; }
+
+  bool stores_seapoints = true, stores_matches = true;
+  std::map<int, int> num_decoded;                // by image_idx
+  std::map<std::pair<int, int>, int> num_asked;  // by image_idx, smaller first
+  int num_found = 0, num_matched = 0;            // SeaPoints, matches: not stored ones
 
  private:
   static World Seabed() {
@@ -125,6 +156,7 @@ class Strip : public PictureSource {
   std::vector<Features> features_;
   SparseModel model_;
   int unreadable_ = -1;
+  std::mutex mutex_;
 };
 
 struct Outcome {
@@ -244,18 +276,48 @@ TEST(DensifySequenceTest, ReportAddsUp) {
   EXPECT_EQ(outcome.report.pairs[0].num_oa, 0);
 }
 
+void ExpectSameClouds(const Outcome& one, const Outcome& other) {
+  ASSERT_EQ(one.clouds.size(), other.clouds.size());
+  ASSERT_GT(one.NumPoints(), 30000);
+  for (size_t c = 0; c < one.clouds.size(); ++c) {
+    ASSERT_EQ(one.clouds[c].points.size(), other.clouds[c].points.size());
+    for (size_t i = 0; i < one.clouds[c].points.size(); ++i) {
+      const DensePoint &a = one.clouds[c].points[i], &b = other.clouds[c].points[i];
+      ASSERT_TRUE(a.xyz == b.xyz && a.normal == b.normal && a.rgb == b.rgb);
+    }
+  }
+}
+
 TEST(DensifySequenceTest, SameCloudsWithAnyNumberOfThreads) {
   Strip strip(4);
   const Outcome one = Densify(&strip, PartialDensificationOptions(), 1);
   const Outcome five = Densify(&strip, PartialDensificationOptions(), 5);
-  ASSERT_EQ(one.clouds.size(), five.clouds.size());
-  ASSERT_GT(one.NumPoints(), 30000);
-  for (size_t c = 0; c < one.clouds.size(); ++c) {
-    ASSERT_EQ(one.clouds[c].points.size(), five.clouds[c].points.size());
-    for (size_t i = 0; i < one.clouds[c].points.size(); ++i) {
-      const DensePoint &a = one.clouds[c].points[i], &b = five.clouds[c].points[i];
-      ASSERT_TRUE(a.xyz == b.xyz && a.normal == b.normal && a.rgb == b.rgb);
+  ExpectSameClouds(one, five);
+}
+
+// What is stored is not worked out again, no pair is asked for twice, no picture decoded twice.
+TEST(DensifySequenceTest, EveryPictureAndPairOnceInTheSequence) {
+  for (const std::string redundancy : {"sequential", "all"}) {
+    PartialDensificationOptions options;
+    options.redundancy = redundancy;
+    options.completion = false;
+    Strip stored, found;
+    found.stores_seapoints = found.stores_matches = false;
+    const Outcome of_stored = Densify(&stored, options);
+    const Outcome of_found = Densify(&found, options);
+    for (const Strip* strip : {&stored, &found}) {
+      EXPECT_GE(strip->num_asked.size(), 8u);
+      for (const auto& [pair, count] : strip->num_asked) {
+        EXPECT_EQ(count, 1) << pair.first << ", " << pair.second;
+      }
+      EXPECT_EQ(strip->num_decoded.size(), static_cast<size_t>(kNumPictures));
+      for (const auto& [image_idx, count] : strip->num_decoded) EXPECT_EQ(count, 1) << image_idx;
     }
+    EXPECT_EQ(stored.num_found, 0);
+    EXPECT_EQ(stored.num_matched, 0);
+    EXPECT_EQ(found.num_found, kNumPictures);
+    EXPECT_EQ(found.num_matched, static_cast<int>(found.num_asked.size()));
+    ExpectSameClouds(of_stored, of_found);
   }
 }
 
@@ -297,7 +359,7 @@ TEST(DensifySequenceTest, WithoutMatchesEveryPictureIsSkippedWithAReason) {
   class NoMatches : public Strip {
    public:
     NoMatches() : Strip(4) {}
-    FeatureMatches Match(const Features&, const Features&) override { return {}; }
+    std::optional<FeatureMatches> ReadMatches(int, int) override { return FeatureMatches(); }
   };
   NoMatches strip;
   PartialDensificationOptions options;
