@@ -2,7 +2,6 @@
 // demo_survey score: a COLMAP model and its dense cloud against that truth.
 #include <boost/program_options.hpp>
 #include <cstdio>
-#include <exception>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "colmap_seapoint/io/colmap_model.h"
 #include "colmap_seapoint/io/image_file.h"
 #include "colmap_seapoint/io/ply.h"
+#include "examples/subcommands.h"
 #include "examples/survey/score.h"
 #include "examples/survey/survey.h"
 
@@ -26,33 +26,6 @@ constexpr char kUsage[] =
     "demo_survey score --survey_path DIR --input_path MODEL --cloud_path fused.ply [options]\n"
     "demo_survey <command> -h lists the options.\n";
 
-// False when only help was asked for.
-bool Parse(const po::options_description& description, const std::vector<std::string>& arguments) {
-  po::variables_map values;
-  try {
-    po::store(
-        po::command_line_parser(arguments)
-            .options(description)
-            .positional({})
-            .style(po::command_line_style::default_style & ~po::command_line_style::allow_guessing)
-            .run(),
-        values);
-    if (values.count("help") > 0) {
-      std::cout << description;
-      return false;
-    }
-    po::notify(values);
-  } catch (const po::error& e) {
-    throw UsageError(e.what());
-  }
-  return true;
-}
-
-template <typename T>
-po::typed_value<T>* Default(T* value) {
-  return po::value<T>(value)->default_value(*value);
-}
-
 int Generate(const std::vector<std::string>& arguments) {
   SurveyOptions o;
   std::string output_path;
@@ -63,6 +36,8 @@ int Generate(const std::vector<std::string>& arguments) {
   add("seed", Default(&o.seed), "of everything random");
   add("num_strips", Default(&o.num_strips), "lawn-mower strips");
   add("images_per_strip", Default(&o.images_per_strip), "pictures a strip");
+  add("revisit", Default(&o.revisit),
+      "pictures taken over the first strip again at the end, from another height and heading");
   add("width", Default(&o.width), "of a picture, pixels");
   add("height", Default(&o.height), "of a picture, pixels");
   add("forward_overlap", Default(&o.forward_overlap), "with the next picture, 0..0.98");
@@ -77,7 +52,7 @@ int Generate(const std::vector<std::string>& arguments) {
   add("jitter", Default(&o.jitter), "factor on the vehicle's unsteadiness");
   add("image_format", Default(&o.image_format), "jpg or png");
   add("num_threads", Default(&o.num_threads), "-1 = all");
-  if (!Parse(description, arguments)) return 0;
+  if (!ParseOptions(description, arguments)) return 0;
   const std::string problem = CheckSurveyOptions(o);
   if (!problem.empty()) throw UsageError(problem);
 
@@ -113,7 +88,7 @@ int Score(const std::vector<std::string>& arguments) {
   add("refine", Default(&o.refine),
       "1: after the alignment by camera centres, fit the cloud to the surface as well");
   add("num_threads", Default(&o.num_threads), "-1 = all");
-  if (!Parse(description, arguments)) return 0;
+  if (!ParseOptions(description, arguments)) return 0;
 
   const SurveyTruth truth = ReadSurveyTruth(survey_path);
   const SparseModel model = ReadSparseModel(input_path);
@@ -129,30 +104,11 @@ int Score(const std::vector<std::string>& arguments) {
   return 0;
 }
 
-int Run(const std::vector<std::string>& arguments) {
-  const std::string command = arguments.empty() ? "" : arguments[0];
-  if (command == "-h" || command == "--help" || command == "help") {
-    std::cout << kUsage;
-    return 0;
-  }
-  const std::vector<std::string> rest(arguments.begin() + (arguments.empty() ? 0 : 1),
-                                      arguments.end());
-  if (command == "generate") return Generate(rest);
-  if (command == "score") return Score(rest);
-  throw UsageError(command.empty() ? "no command given" : "unknown command '" + command + "'");
-}
-
 }  // namespace
 }  // namespace colmap_seapoint
 
 int main(int argc, char** argv) {
-  try {
-    return colmap_seapoint::Run(std::vector<std::string>(argv + 1, argv + argc));
-  } catch (const colmap_seapoint::UsageError& e) {
-    std::cerr << colmap_seapoint::kUsage << "demo_survey: " << e.what() << "\n";
-    return 2;
-  } catch (const std::exception& e) {
-    std::cerr << "demo_survey: " << e.what() << "\n";
-    return 1;
-  }
+  using namespace colmap_seapoint;
+  return RunSubcommands(argc, argv, "demo_survey", kUsage,
+                        {{"generate", Generate}, {"score", Score}});
 }

@@ -22,22 +22,24 @@ nlohmann::ordered_json ReadJson(const std::filesystem::path& path) {
 }
 
 nlohmann::ordered_json OptionsJson(const SurveyOptions& o) {
-  return {{"seed", o.seed},
-          {"num_strips", o.num_strips},
-          {"images_per_strip", o.images_per_strip},
-          {"width", o.width},
-          {"height", o.height},
-          {"forward_overlap", o.forward_overlap},
-          {"side_overlap", o.side_overlap},
-          {"altitude", o.altitude},
-          {"field_of_view", o.field_of_view_deg},
-          {"relief", o.relief},
-          {"turbidity", o.turbidity},
-          {"caustics", o.caustics},
-          {"marine_snow", o.marine_snow},
-          {"noise", o.noise},
-          {"jitter", o.jitter},
-          {"image_format", o.image_format}};
+  nlohmann::ordered_json json = {{"seed", o.seed},
+                                 {"num_strips", o.num_strips},
+                                 {"images_per_strip", o.images_per_strip},
+                                 {"width", o.width},
+                                 {"height", o.height},
+                                 {"forward_overlap", o.forward_overlap},
+                                 {"side_overlap", o.side_overlap},
+                                 {"altitude", o.altitude},
+                                 {"field_of_view", o.field_of_view_deg},
+                                 {"relief", o.relief},
+                                 {"turbidity", o.turbidity},
+                                 {"caustics", o.caustics},
+                                 {"marine_snow", o.marine_snow},
+                                 {"noise", o.noise},
+                                 {"jitter", o.jitter},
+                                 {"image_format", o.image_format}};
+  if (o.revisit > 0) json["revisit"] = o.revisit;  // surveys without one keep their bytes
+  return json;
 }
 
 // As --ImageReader.camera_params takes them: for runs with a calibrated camera.

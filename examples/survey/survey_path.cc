@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kRadPerDeg = kPi / 180;
+constexpr double kRevisitAltitude = 0.93;
+constexpr double kRevisitHeadingDeg = 35;
 
 double Focal(const SurveyOptions& options) {
   return 0.5 * options.width / std::tan(0.5 * options.field_of_view_deg * kRadPerDeg);
@@ -41,23 +43,38 @@ Eigen::Quaterniond WorldFromLevelCam(double heading_rad) {
   return Eigen::Quaterniond(axes);
 }
 
-Rigid3d Pose(const SurveyOptions& options, int strip, int station, double forward_step,
-             double side_step) {
-  const int64_t number = int64_t{strip} * options.images_per_strip + station;
+// Where a picture is planned to be taken.
+struct Station {
+  double x = 0, y = 0;         // metres
+  double altitude_factor = 1;  // of options.altitude
+  double heading = 0;          // radians
+};
+
+Station StripStation(const SurveyOptions& options, int strip, int station, double forward_step,
+                     double side_step) {
+  const bool outbound = strip % 2 == 0;
+  const int along = outbound ? station : options.images_per_strip - 1 - station;
+  return {along * forward_step, strip * side_step, 1, outbound ? 0 : kPi};
+}
+
+Station RevisitStation(int station, double forward_step) {
+  return {(station + 0.5) * forward_step, 0, kRevisitAltitude, kRevisitHeadingDeg * kRadPerDeg};
+}
+
+// `number`: of the picture, in the order in which they are taken.
+Rigid3d UnsteadyPose(const SurveyOptions& options, const Station& station, int64_t number) {
   const auto bell = [&](int k) {
     return options.jitter * Bell(Hash(Hash(static_cast<uint64_t>(options.seed), 7001), number, k));
   };
-  const bool outbound = strip % 2 == 0;
-  const int along = outbound ? station : options.images_per_strip - 1 - station;
   const double swell =
       0.03 * options.jitter * std::sin(0.55 * static_cast<double>(number) + options.seed);
-  const Eigen::Vector3d centre(
-      along * forward_step + 0.02 * bell(0), strip * side_step + 0.02 * bell(1),
-      0.05 * options.relief + options.altitude * (1 + swell + 0.008 * bell(2)));
+  const Eigen::Vector3d centre(station.x + 0.02 * bell(0), station.y + 0.02 * bell(1),
+                               0.05 * options.relief + options.altitude * station.altitude_factor *
+                                                           (1 + swell + 0.008 * bell(2)));
   const Eigen::Quaterniond tilt =
       Eigen::AngleAxisd(1.5 * kRadPerDeg * bell(3), Eigen::Vector3d::UnitX()) *
       Eigen::AngleAxisd(1.5 * kRadPerDeg * bell(4), Eigen::Vector3d::UnitY());
-  const double heading = (outbound ? 0 : kPi) + 2.5 * kRadPerDeg * bell(5);
+  const double heading = station.heading + 2.5 * kRadPerDeg * bell(5);
   Rigid3d cam_from_world;
   cam_from_world.rotation = (WorldFromLevelCam(heading) * tilt).conjugate().normalized();
   cam_from_world.translation = -(cam_from_world.rotation * centre);
@@ -76,6 +93,7 @@ std::string CheckSurveyOptions(const SurveyOptions& o) {
   range("seed", o.seed, 0, 2147483647);
   range("num_strips", o.num_strips, 1, 1000);
   range("images_per_strip", o.images_per_strip, 1, 10000);
+  range("revisit", o.revisit, 0, o.images_per_strip);
   range("width", o.width, 64, 8000);
   range("height", o.height, 64, 8000);
   range("forward_overlap", o.forward_overlap, 0, 0.98);
@@ -102,18 +120,25 @@ SparseModel PlanSurvey(const SurveyOptions& options) {
   const double gsd = NominalGsd(options);
   const double forward_step = gsd * options.height * (1 - options.forward_overlap);
   const double side_step = gsd * options.width * (1 - options.side_overlap);
+  const auto add = [&](const Station& station) {
+    PosedImage image;
+    image.image_id = static_cast<uint32_t>(model.images.size() + 1);
+    image.camera_id = 1;
+    char name[64];
+    std::snprintf(name, sizeof(name), "seabed_%04u.%s", image.image_id,
+                  options.image_format.c_str());
+    image.name = name;
+    image.cam_from_world =
+        UnsteadyPose(options, station, static_cast<int64_t>(model.images.size()));
+    model.images.push_back(std::move(image));
+  };
   for (int strip = 0; strip < options.num_strips; ++strip) {
     for (int station = 0; station < options.images_per_strip; ++station) {
-      PosedImage image;
-      image.image_id = static_cast<uint32_t>(model.images.size() + 1);
-      image.camera_id = 1;
-      char name[64];
-      std::snprintf(name, sizeof(name), "seabed_%04u.%s", image.image_id,
-                    options.image_format.c_str());
-      image.name = name;
-      image.cam_from_world = Pose(options, strip, station, forward_step, side_step);
-      model.images.push_back(std::move(image));
+      add(StripStation(options, strip, station, forward_step, side_step));
     }
+  }
+  for (int station = 0; station < options.revisit; ++station) {
+    add(RevisitStation(station, forward_step));
   }
   return model;
 }

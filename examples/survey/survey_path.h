@@ -11,6 +11,7 @@ struct SurveyOptions {
   int seed = 1;
   int num_strips = 2;
   int images_per_strip = 6;
+  int revisit = 0;                // pictures taken over the first strip again, at the end
   int width = 1360;               // pixels
   int height = 1024;              // pixels
   double forward_overlap = 0.75;  // share of a picture seen again in the next one
@@ -35,7 +36,9 @@ double NominalGsd(const SurveyOptions& options);
 
 // One OPENCV camera with real distortion; a lawn-mower path in metres, z up, the camera looking
 // down. The vehicle turns between strips, so the pictures of every other strip are upside down.
-// Images are named in the order in which they are taken; no points.
+// A revisit follows the first strip from its beginning, a little lower and at a slant to its
+// course, as a vehicle that holds against a current. Images are named in the order in which they
+// are taken; no points.
 SparseModel PlanSurvey(const SurveyOptions& options);
 
 struct Rectangle {

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -55,6 +57,37 @@ TEST(SurveyPathTest, LawnMowerWithTurns) {
     const double heading = i < 3 ? 1 : -1;  // image rows run against the vehicle's way
     EXPECT_LT((axes.row(1).transpose() - Eigen::Vector3d(-heading, 0, 0)).norm(), 1e-9);
   }
+}
+
+TEST(SurveyPathTest, RevisitComesBackToTheFirstStripAndChangesNothingBefore) {
+  SurveyOptions options = SmallSurvey();
+  const SparseModel strips = PlanSurvey(options);
+  options.revisit = 3;
+  const SparseModel model = PlanSurvey(options);
+  ASSERT_EQ(model.images.size(), 9u);
+  for (size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(model.images[i].cam_from_world.translation,
+              strips.images[i].cam_from_world.translation);
+    EXPECT_EQ(model.images[i].cam_from_world.rotation.coeffs(),
+              strips.images[i].cam_from_world.rotation.coeffs());
+  }
+  EXPECT_EQ(model.images[8].name, "seabed_0009.jpg");
+  options.jitter = 0;
+  const SparseModel steady = PlanSurvey(options);
+  const double step = 0.25 * NominalGsd(options) * options.height;
+  for (size_t i = 6; i < 9; ++i) {
+    const Rigid3d& pose = steady.images[i].cam_from_world;
+    const Eigen::Vector3d first = steady.images[i - 6].cam_from_world.OriginInSource();
+    const Eigen::Vector3d way = pose.OriginInSource() - first;
+    EXPECT_NEAR(way.x(), 0.5 * step, 1e-9);
+    EXPECT_NEAR(way.y(), 0, 1e-9);
+    EXPECT_NEAR(way.z(), -0.07 * options.altitude, 1e-9);
+    // Image rows run against the heading, 35 degrees from the strip's.
+    EXPECT_NEAR(pose.rotation.toRotationMatrix()(1, 0), -std::cos(35 * 3.14159265358979 / 180),
+                1e-9);
+  }
+  options.revisit = options.images_per_strip + 1;
+  EXPECT_NE(CheckSurveyOptions(options).find("--revisit is 4"), std::string::npos);
 }
 
 TEST(SurveyPathTest, IllegalOptionsNameThemselves) {
@@ -157,6 +190,22 @@ TEST(SurveyTest, PicturesAreExposedLikeRealOnes) {
       EXPECT_LT(MeanGrey(picture), 170) << turbidity;
     }
   }
+}
+
+TEST(SurveyTest, OnlyARevisitIsWrittenDown) {
+  const std::filesystem::path dir =
+      std::filesystem::temp_directory_path() / ("revisit_test_" + std::to_string(getpid()));
+  for (int revisit : {0, 2}) {
+    SurveyOptions options = SmallSurvey();
+    options.revisit = revisit;
+    WriteSurveyTruth(dir, options, MakeSurveyTruth(options));
+    std::ifstream file(dir / "truth" / "survey.json");
+    const auto json = nlohmann::json::parse(file);
+    EXPECT_EQ(json["options"].contains("revisit"), revisit > 0);
+    EXPECT_EQ(json["num_images"], 6 + revisit);
+    EXPECT_EQ(ReadSurveyTruth(dir).model.images.size(), static_cast<size_t>(6 + revisit));
+  }
+  std::filesystem::remove_all(dir);
 }
 
 TEST(SurveyTest, TruthComesBackFromDisk) {
