@@ -3,16 +3,14 @@
 // sets measured so far. scripts/benchmark_features.sh runs both.
 #include <algorithm>
 #include <boost/program_options.hpp>
-#include <cstdio>
-#include <exception>
 #include <filesystem>
-#include <iostream>
 #include <string>
 #include <vector>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/natural_order.h"
 #include "colmap_seapoint/io/atomic_file.h"
+#include "examples/subcommands.h"
 #include "tests/benchmark/feature_tables.h"
 #include "tests/benchmark/measure_set.h"
 
@@ -25,33 +23,6 @@ constexpr char kUsage[] =
     "feature_benchmark measure --output_path SETS/NAME.csv (--image_path DIR | --survey_path DIR)\n"
     "feature_benchmark tables --input_path SETS --output_path DIR\n"
     "feature_benchmark <command> -h lists the options.\n";
-
-// False when only help was asked for.
-bool Parse(const po::options_description& description, const std::vector<std::string>& arguments,
-           po::variables_map* values) {
-  try {
-    po::store(
-        po::command_line_parser(arguments)
-            .options(description)
-            .positional({})
-            .style(po::command_line_style::default_style & ~po::command_line_style::allow_guessing)
-            .run(),
-        *values);
-    if (values->count("help") > 0) {
-      std::cout << description;
-      return false;
-    }
-    po::notify(*values);
-  } catch (const po::error& e) {
-    throw UsageError(e.what());
-  }
-  return true;
-}
-
-template <typename T>
-po::typed_value<T>* Default(T* value) {
-  return po::value<T>(value)->default_value(*value);
-}
 
 int Measure(const std::vector<std::string>& arguments) {
   MeasureOptions o;
@@ -69,8 +40,7 @@ int Measure(const std::vector<std::string>& arguments) {
   add("adjust_thresholds", Default(&o.adjust_thresholds),
       "1: lower ORB's and SIFT's own thresholds until they find min_num_features; 0: OpenCV's");
   add("num_repeats", Default(&o.num_repeats), "of every timing; the median counts");
-  po::variables_map values;
-  if (!Parse(description, arguments, &values)) return 0;
+  if (!ParseOptions(description, arguments)) return 0;
   if (image_path.empty() && survey_path.empty()) {
     throw UsageError("--image_path or --survey_path is required");
   }
@@ -94,8 +64,7 @@ int Tables(const std::vector<std::string>& arguments) {
   add("input_path", po::value(&input_path)->required(), "folder with the CSVs of measure");
   add("output_path", po::value(&output_path)->required(),
       "folder for features.csv, features.md and features.dat");
-  po::variables_map values;
-  if (!Parse(description, arguments, &values)) return 0;
+  if (!ParseOptions(description, arguments)) return 0;
   std::vector<std::string> names;
   std::error_code code;
   for (const auto& entry : std::filesystem::directory_iterator(input_path, code)) {
@@ -116,30 +85,11 @@ int Tables(const std::vector<std::string>& arguments) {
   return 0;
 }
 
-int Run(const std::vector<std::string>& arguments) {
-  const std::string command = arguments.empty() ? "" : arguments[0];
-  if (command == "-h" || command == "--help" || command == "help") {
-    std::cout << kUsage;
-    return 0;
-  }
-  const std::vector<std::string> rest(arguments.begin() + (arguments.empty() ? 0 : 1),
-                                      arguments.end());
-  if (command == "measure") return Measure(rest);
-  if (command == "tables") return Tables(rest);
-  throw UsageError(command.empty() ? "no command given" : "unknown command '" + command + "'");
-}
-
 }  // namespace
 }  // namespace colmap_seapoint
 
 int main(int argc, char** argv) {
-  try {
-    return colmap_seapoint::Run(std::vector<std::string>(argv + 1, argv + argc));
-  } catch (const colmap_seapoint::UsageError& e) {
-    std::cerr << colmap_seapoint::kUsage << "feature_benchmark: " << e.what() << "\n";
-    return 2;
-  } catch (const std::exception& e) {
-    std::cerr << "feature_benchmark: " << e.what() << "\n";
-    return 1;
-  }
+  using namespace colmap_seapoint;
+  return RunSubcommands(argc, argv, "feature_benchmark", kUsage,
+                        {{"measure", Measure}, {"tables", Tables}});
 }

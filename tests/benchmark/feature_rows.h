@@ -2,13 +2,12 @@
 #pragma once
 
 #include <filesystem>
-#include <limits>
 #include <string>
 #include <vector>
 
-namespace colmap_seapoint {
+#include "tests/benchmark/row_csv.h"
 
-inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+namespace colmap_seapoint {
 
 // Shares and areas 0..1; kNotMeasured (an empty field in the file) where nothing could be measured.
 struct FeatureRow {
@@ -32,9 +31,6 @@ struct FeatureRow {
   double recall = kNotMeasured;
   double area_precision = kNotMeasured;
 };
-
-// Commas, quotes, bars and control characters in names become '_', here and in the Markdown.
-std::string SafeName(std::string name);
 
 void WriteFeatureRows(const std::filesystem::path& path, const std::vector<FeatureRow>& rows);
 

@@ -1,18 +1,16 @@
 #include "tests/benchmark/measure_set.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <memory>
-#include <thread>
 #include <utility>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/natural_order.h"
-#include "colmap_seapoint/base/timer.h"
 #include "colmap_seapoint/io/image_file.h"
 #include "densify/densify_pair.h"
 #include "densify/partial_densification_options.h"
+#include "tests/benchmark/cpu_seconds.h"
 #include "tests/benchmark/detectors.h"
 #include "tests/benchmark/pair_measures.h"
 #include "tests/benchmark/pair_truth.h"
@@ -32,16 +30,6 @@ struct Picture {
   std::vector<DetectedFeatures> features;  // by detector
   std::vector<double> extract_cpu;         // by detector
 };
-
-// CPU seconds of work(). OpenCV's idle threads spin for a moment before they sleep, which must not
-// be counted to whoever comes next.
-template <typename Work>
-double CpuSecondsOf(const Work& work) {
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  const Timer timer;
-  work();
-  return timer.CpuSeconds();
-}
 
 Picture MeasurePicture(const MeasureOptions& options, const std::string& name,
                        const Detectors& detectors) {
@@ -85,8 +73,8 @@ FeatureRow MakeRow(const FeatureDetector& detector, const Picture& picture1,
                    const InfluenceMask& mask) {
   const auto& points1 = picture1.features[d].Points();
   const auto& points2 = picture2.features[d].Points();
-  const TwoViewGeometry geometry = detector.Verify(
-      picture1.camera, picture1.features[d], picture2.camera, picture2.features[d], matches);
+  const TwoViewGeometry geometry = detector.Verify(picture1.camera, picture1.features[d],
+                                                   picture2.camera, picture2.features[d], matches);
   FeatureRow row;
   row.detector = detector.Name();
   row.setting = detector.Setting();

@@ -1,0 +1,38 @@
+// What can be said of a cloud without knowing the truth.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+namespace colmap_seapoint {
+
+// A cloud that remembers which pair gave each point.
+struct PairedCloud {
+  std::vector<Eigen::Vector3f> points;
+  std::vector<int> pair_idx;  // same length
+};
+
+// Mean number of pairs that gave points to an occupied cube of side `cell`: 1 = no redundancy, but
+// for the seams between pairs. NaN for an empty cloud.
+double MeanLayers(const PairedCloud& cloud, double cell);
+
+// Keeps a reference: the points must outlive it.
+class NearestPoint {
+ public:
+  explicit NearestPoint(const std::vector<Eigen::Vector3f>& points);
+  ~NearestPoint();
+  // Infinity for an empty cloud.
+  double Distance(const Eigen::Vector3f& place) const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
+};
+
+// Share of the reference's points (a sample of them, evenly spread) that have a point of the cloud
+// within `distance`. NaN for an empty reference.
+double ShareNear(const std::vector<Eigen::Vector3f>& reference,
+                 const std::vector<Eigen::Vector3f>& cloud, double distance);
+
+}  // namespace colmap_seapoint

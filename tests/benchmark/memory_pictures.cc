@@ -1,0 +1,90 @@
+#include "tests/benchmark/memory_pictures.h"
+
+#include <time.h>
+
+#include <algorithm>
+
+#include "colmap_seapoint/base/parallel.h"
+#include "colmap_seapoint/commands/model_pictures.h"
+#include "colmap_seapoint/io/image_file.h"
+#include "feature/extract_features.h"
+#include "tests/benchmark/cpu_seconds.h"
+#include "tests/benchmark/row_csv.h"
+
+namespace colmap_seapoint {
+namespace {
+
+int64_t ThreadCpuNanoseconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return int64_t{now.tv_sec} * 1000000000 + now.tv_nsec;
+}
+
+}  // namespace
+
+MemoryPictures::MemoryPictures(const SparseModel& model, const std::filesystem::path& image_path,
+                               const std::string& database_path, int num_threads) {
+  const SeaPointExtractionOptions extraction;
+  ModelPictures source(model, image_path, database_path, extraction, matching_);
+  const auto count = static_cast<int64_t>(model.images.size());
+  pictures_.resize(model.images.size());
+  features_.resize(model.images.size());
+  ParallelFor(num_threads, count, [&](int64_t i) {
+    pictures_[static_cast<size_t>(i)] = source.ReadColor(static_cast<int>(i));
+  });
+  const bool stored = source.NumInDatabase() > 0;
+  seapoint_cpu_ = stored ? kNotMeasured : 0;
+  for (size_t i = 0; i < model.images.size(); ++i) {
+    if (stored) {
+      features_[i] = source.ReadSeaPoints(static_cast<int>(i));
+      continue;
+    }
+    const GrayImage gray = ReadGrayImage(image_path / model.images[i].name);
+    seapoint_cpu_ += CpuSecondsOf(
+        [&] { features_[i] = ExtractFeatures(gray, GrayImage(), extraction).features; });
+  }
+}
+
+ColorImage MemoryPictures::ReadColor(int image_idx) {
+  return pictures_.at(static_cast<size_t>(image_idx));
+}
+
+Features MemoryPictures::ReadSeaPoints(int image_idx) {
+  return features_.at(static_cast<size_t>(image_idx));
+}
+
+FeatureMatches MemoryPictures::Match(const Features& features1, const Features& features2) {
+  const int64_t start = ThreadCpuNanoseconds();
+  FeatureMatches matches = MatchSeaPoints(features1, features2, matching_);
+  match_nanoseconds_ += ThreadCpuNanoseconds() - start;
+  return matches;
+}
+
+void MemoryPictures::DropSeaPoints(int image_idx, const std::vector<Eigen::Vector2d>& places,
+                                   double radius) {
+  Features& features = features_.at(static_cast<size_t>(image_idx));
+  Features kept;
+  for (size_t i = 0; i < features.points.size(); ++i) {
+    const Eigen::Vector2d at(features.points[i].x, features.points[i].y);
+    const bool drop = std::any_of(places.begin(), places.end(), [&](const Eigen::Vector2d& place) {
+      return (place - at).squaredNorm() <= radius * radius;
+    });
+    if (drop) continue;
+    kept.points.push_back(features.points[i]);
+    kept.descriptors.push_back(features.descriptors[i]);
+    if (!features.sift_descriptors.empty()) {
+      kept.sift_descriptors.push_back(features.sift_descriptors[i]);
+    }
+  }
+  features = std::move(kept);
+}
+
+double MemoryPictures::Megapixels() const {
+  double pixels = 0;
+  for (const ColorImage& picture : pictures_) {
+    pixels += static_cast<double>(picture.width) * picture.height;
+  }
+  return 1e-6 * pixels;
+}
+
+}  // namespace colmap_seapoint
