@@ -3,11 +3,10 @@
 #include <time.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "colmap_seapoint/base/parallel.h"
-#include "colmap_seapoint/commands/model_pictures.h"
 #include "colmap_seapoint/io/image_file.h"
-#include "feature/extract_features.h"
 #include "tests/benchmark/cpu_seconds.h"
 #include "tests/benchmark/row_csv.h"
 
@@ -23,45 +22,52 @@ int64_t ThreadCpuNanoseconds() {
 }  // namespace
 
 MemoryPictures::MemoryPictures(const SparseModel& model, const std::filesystem::path& image_path,
-                               const std::string& database_path, int num_threads) {
-  const SeaPointExtractionOptions extraction;
-  ModelPictures source(model, image_path, database_path, extraction, matching_);
-  const auto count = static_cast<int64_t>(model.images.size());
+                               const std::string& database_path, int num_threads)
+    : source_(model, image_path, database_path, SeaPointExtractionOptions(),
+              SeaPointMatchingOptions()) {
   pictures_.resize(model.images.size());
   features_.resize(model.images.size());
-  ParallelFor(num_threads, count, [&](int64_t i) {
-    pictures_[static_cast<size_t>(i)] = source.ReadColor(static_cast<int>(i));
+  ParallelFor(num_threads, static_cast<int64_t>(model.images.size()), [&](int64_t i) {
+    pictures_[static_cast<size_t>(i)] = source_.ReadColor(static_cast<int>(i));
   });
-  const bool stored = source.NumInDatabase() > 0;
-  seapoint_cpu_ = stored ? kNotMeasured : 0;
   for (size_t i = 0; i < model.images.size(); ++i) {
-    if (stored) {
-      features_[i] = source.ReadSeaPoints(static_cast<int>(i));
+    if (auto stored = source_.ReadSeaPoints(static_cast<int>(i))) {
+      features_[i] = std::move(*stored);
       continue;
     }
     const GrayImage gray = ReadGrayImage(image_path / model.images[i].name);
-    seapoint_cpu_ += CpuSecondsOf(
-        [&] { features_[i] = ExtractFeatures(gray, GrayImage(), extraction).features; });
+    seapoint_cpu_ += CpuSecondsOf([&] { features_[i] = source_.FindSeaPoints(gray); });
   }
+  if (source_.NumInDatabase() > 0) seapoint_cpu_ = kNotMeasured;
 }
 
 ColorImage MemoryPictures::ReadColor(int image_idx) {
   return pictures_.at(static_cast<size_t>(image_idx));
 }
 
-Features MemoryPictures::ReadSeaPoints(int image_idx) {
+std::optional<Features> MemoryPictures::ReadSeaPoints(int image_idx) {
   return features_.at(static_cast<size_t>(image_idx));
+}
+
+Features MemoryPictures::FindSeaPoints(const GrayImage& picture) {
+  return source_.FindSeaPoints(picture);
+}
+
+std::optional<FeatureMatches> MemoryPictures::ReadMatches(int image_idx1, int image_idx2) {
+  if (dropped_) return std::nullopt;
+  return source_.ReadMatches(image_idx1, image_idx2);
 }
 
 FeatureMatches MemoryPictures::Match(const Features& features1, const Features& features2) {
   const int64_t start = ThreadCpuNanoseconds();
-  FeatureMatches matches = MatchSeaPoints(features1, features2, matching_);
+  FeatureMatches matches = source_.Match(features1, features2);
   match_nanoseconds_ += ThreadCpuNanoseconds() - start;
   return matches;
 }
 
 void MemoryPictures::DropSeaPoints(int image_idx, const std::vector<Eigen::Vector2d>& places,
                                    double radius) {
+  dropped_ = true;
   Features& features = features_.at(static_cast<size_t>(image_idx));
   Features kept;
   for (size_t i = 0; i < features.points.size(); ++i) {

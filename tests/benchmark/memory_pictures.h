@@ -4,24 +4,29 @@
 
 #include <atomic>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "colmap_seapoint/base/sparse_model.h"
+#include "colmap_seapoint/commands/model_pictures.h"
 #include "densify/densify_sequence.h"
-#include "feature/match_features.h"
 
 namespace colmap_seapoint {
 
 class MemoryPictures : public PictureSource {
  public:
-  // Decodes every picture (3 bytes a pixel are held), reads its SeaPoints from the database or,
-  // where that has none (or is not given), finds them. Throws Error for unreadable pictures.
+  // The model outlives it. Decodes every picture (3 bytes a pixel are held), reads its SeaPoints
+  // from the database or, where that has none (or is not given), finds them. Throws Error for
+  // unreadable pictures.
   MemoryPictures(const SparseModel& model, const std::filesystem::path& image_path,
                  const std::string& database_path, int num_threads);
 
   ColorImage ReadColor(int image_idx) override;
-  Features ReadSeaPoints(int image_idx) override;
+  std::optional<Features> ReadSeaPoints(int image_idx) override;
+  Features FindSeaPoints(const GrayImage& picture) override;
+  // The database's; none after DropSeaPoints, which changes the indices.
+  std::optional<FeatureMatches> ReadMatches(int image_idx1, int image_idx2) override;
   FeatureMatches Match(const Features& features1, const Features& features2) override;
 
   // Forgets the SeaPoints of a picture within `radius` pixels of the places.
@@ -34,7 +39,8 @@ class MemoryPictures : public PictureSource {
   double MatchCpuSeconds() const { return 1e-9 * static_cast<double>(match_nanoseconds_); }
 
  private:
-  SeaPointMatchingOptions matching_;
+  ModelPictures source_;
+  bool dropped_ = false;
   std::vector<ColorImage> pictures_;
   std::vector<Features> features_;
   double seapoint_cpu_ = 0;
