@@ -24,9 +24,8 @@ std::vector<int> SequenceOrder(const SparseModel& model) {
 
 SequenceReport DensifySequence(const SparseModel& model, PictureSource* source,
                                const PartialDensificationOptions& options, int num_threads,
-                               const std::function<void(const PartialCloud&)>& sink,
-                               const std::function<void(int64_t, int64_t)>& progress) {
-  SequenceState state(model, SequenceOrder(model), source, options, num_threads, sink);
+                               const SequenceCallbacks& callbacks) {
+  SequenceState state(model, SequenceOrder(model), source, options, num_threads, callbacks);
   const int num_pictures = state.NumPictures();
   const int64_t total = num_pictures * (options.completion ? 2 : 1);
 
@@ -39,12 +38,12 @@ SequenceReport DensifySequence(const SparseModel& model, PictureSource* source,
     } else {
       ++first;
     }
-    progress(first, total);
+    callbacks.progress(first, total);
   }
   if (options.completion) {
     for (int position = 0; position < num_pictures; ++position) {
       state.Complete(position);
-      progress(num_pictures + position + 1, total);
+      callbacks.progress(num_pictures + position + 1, total);
     }
   }
   return state.TakeReport();

@@ -58,12 +58,20 @@ struct SequenceReport {
   int64_t num_points = 0;
 };
 
+struct PairDebug;
+
+// What comes out on the way, in processing order, from the caller's thread.
+struct SequenceCallbacks {
+  std::function<void(const PartialCloud&)> sink;              // each partial local cloud
+  std::function<void(int64_t done, int64_t total)> progress;  // now and then
+  // Optional: every pair that was densified. Then each is densified in full too, for comparison.
+  std::function<void(const PairDebug&)> debug;
+};
+
 // Densifies every pair of the model's pictures, taken in the order of their names (natural sort:
-// "2" before "10"), hands each partial local cloud to `sink` in processing order (from the caller's
-// thread), and calls `progress(done, total)` now and then. Same clouds for any num_threads.
+// "2" before "10"). Same clouds for any num_threads, with or without `debug`.
 SequenceReport DensifySequence(const SparseModel& model, PictureSource* source,
                                const PartialDensificationOptions& options, int num_threads,
-                               const std::function<void(const PartialCloud&)>& sink,
-                               const std::function<void(int64_t, int64_t)>& progress);
+                               const SequenceCallbacks& callbacks);
 
 }  // namespace colmap_seapoint

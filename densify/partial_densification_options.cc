@@ -31,6 +31,10 @@ void PartialDensificationOptions::Bind(OptionTable* table) {
              100000);
   table->Add(group + "completion", &completion,
              "after the sequence, densify what two pictures see and no pair has covered", "ours");
+  table->Add(group + "write_debug", &write_debug,
+             "draw every pair's figures (paper, Figures 10, 11, 15) into "
+             "OUTPUT_PATH/debug",
+             "ours");
 }
 
 std::string PartialDensificationOptions::Check() const {

@@ -19,6 +19,7 @@ struct PartialDensificationOptions {
   double min_mean_motion = 0.02;
   int min_num_seeds = 20;
   bool completion = true;
+  bool write_debug = false;
 
   void Bind(OptionTable* table);
   std::string Check() const;

@@ -5,6 +5,7 @@
 
 #include "colmap_seapoint/base/timer.h"
 #include "densify/completion.h"
+#include "densify/pair_debug.h"
 #include "densify/pair_selection.h"
 
 namespace colmap_seapoint {
@@ -20,12 +21,12 @@ std::pair<int, int> Ordered(int a, int b) { return {std::min(a, b), std::max(a, 
 
 SequenceState::SequenceState(const SparseModel& model, std::vector<int> order,
                              PictureSource* source, const PartialDensificationOptions& options,
-                             int num_threads, std::function<void(const PartialCloud&)> sink)
+                             int num_threads, const SequenceCallbacks& callbacks)
     : model_(model),
       order_(std::move(order)),
       options_(options),
       num_threads_(num_threads),
-      sink_(std::move(sink)),
+      callbacks_(callbacks),
       cache_(source),
       covisible_(CovisiblePictures(model, order_)) {}
 
@@ -108,11 +109,11 @@ SequenceState::Overlap SequenceState::AssessOverlap(int first) {
   overlap.labels.assign(points->points.size(), SeaPointLabel::kNA);
   if (previous_first_ >= 0) {
     const auto matches = MatchesOf(previous_first_, first);
-    const InfluenceMask mask =
-        MakeInfluenceMask(cells, points->points, *matches, previous_labels_, radius);
-    overlap.labels = LabelSeaPoints(mask, points->points, *matches, previous_labels_, radius);
-    overlap.rate = mask.OverlapRate();
-    overlap.closed = mask.marked;
+    overlap.mask = MakeInfluenceMask(cells, points->points, *matches, previous_labels_, radius);
+    overlap.labels =
+        LabelSeaPoints(overlap.mask, points->points, *matches, previous_labels_, radius);
+    overlap.rate = overlap.mask.OverlapRate();
+    overlap.closed = overlap.mask.marked;
   }
   if (options_.redundancy == "all") {
     const View view = ViewAt(first);
@@ -207,8 +208,44 @@ bool SequenceState::RunPair(int first, int second, const Overlap& overlap,
   if (!result->failure.empty()) return false;
   footprints_.push_back(std::move(result->footprint));
   report_.num_points += report->num_points;
-  sink_(result->cloud);
+  callbacks_.sink(result->cloud);
+  if (callbacks_.debug) ShowPair(first, second, overlap, *report, std::move(input), *result);
   return true;
+}
+
+void SequenceState::ShowPair(int first, int second, const Overlap& overlap,
+                             const PairReport& report, PairInput input, const PairResult& result) {
+  const auto points = SeaPointsAt(first);
+  PairDebug debug;
+  debug.report = report;
+  debug.view1 = input.view1;
+  debug.view2 = input.view2;
+  debug.color1 = input.color1;
+  debug.points1 = &points->points;
+  debug.labels1 = overlap.labels;
+  debug.influence_radius1 = options_.influence_radius * LongerSide(first);
+  debug.cells = input.cells;
+  debug.covered_range = overlap.covered_range;
+  debug.partial = &result;
+  std::shared_ptr<const Picture> previous;
+  std::shared_ptr<const Features> previous_points;
+  if (overlap.mask.grid.Size() > 0) {
+    debug.previous_image_idx = ImageIdxAt(previous_first_);
+    previous = cache_.Get(ImageIdxAt(previous_first_));
+    previous_points = SeaPointsAt(previous_first_);
+    debug.previous_color = previous ? &previous->color : nullptr;
+    debug.previous_points = &previous_points->points;
+    debug.previous_labels = previous_labels_;
+    debug.interpair = *MatchesOf(previous_first_, first);
+    debug.mask = overlap.mask;
+    debug.influence_radius0 = options_.influence_radius * LongerSide(previous_first_);
+  }
+  input.closed.clear();
+  input.covered_range.clear();
+  const std::vector<PixelPair> all_seeds = SeedsFromMatches(first, second, {});
+  input.seeds.insert(input.seeds.end(), all_seeds.begin(), all_seeds.end());
+  debug.normal = DensifyPair(input, options_, num_threads_);
+  callbacks_.debug(debug);
 }
 
 void SequenceState::DensifyNewAreas(int first, int second) {

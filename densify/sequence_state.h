@@ -2,7 +2,6 @@
 // and the footprints of all partial clouds (ours). The steps of the spine in densify_sequence.cc.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <set>
 #include <string>
@@ -22,7 +21,7 @@ class SequenceState {
  public:
   SequenceState(const SparseModel& model, std::vector<int> order, PictureSource* source,
                 const PartialDensificationOptions& options, int num_threads,
-                std::function<void(const PartialCloud&)> sink);
+                const SequenceCallbacks& callbacks);
 
   int NumPictures() const { return static_cast<int>(order_.size()); }
 
@@ -40,6 +39,7 @@ class SequenceState {
  private:
   // What came before, as this pair has to know it (paper 2.5; ours for redundancy "all").
   struct Overlap {
+    InfluenceMask mask;                 // no cells: there is no pair before
     std::vector<uint8_t> closed;        // sequential
     std::vector<float> covered_range;   // all
     std::vector<SeaPointLabel> labels;  // of the first picture's SeaPoints
@@ -62,12 +62,14 @@ class SequenceState {
   PairReport NewReport(int first, int second, const std::string& pass) const;
   bool RunPair(int first, int second, const Overlap& overlap, std::vector<PixelPair> seeds,
                PairReport* report, PairResult* result);
+  void ShowPair(int first, int second, const Overlap& overlap, const PairReport& report,
+                PairInput input, const PairResult& result);
 
   const SparseModel& model_;
   const std::vector<int> order_;
   const PartialDensificationOptions& options_;
   const int num_threads_;
-  const std::function<void(const PartialCloud&)> sink_;
+  const SequenceCallbacks& callbacks_;
   PictureCache cache_;
 
   int previous_first_ = -1;

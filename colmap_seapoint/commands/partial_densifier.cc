@@ -8,6 +8,7 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/commands/debug_figures.h"
 #include "colmap_seapoint/commands/model_pictures.h"
 #include "colmap_seapoint/commands/pairs_csv.h"
 #include "colmap_seapoint/io/atomic_file.h"
@@ -79,20 +80,25 @@ void LogPairSeconds(const SequenceReport& sequence) {
 SequenceReport Densify(const PartialDensifierOptions& options, const SparseModel& model,
                        ModelPictures* pictures, CloudWriter* cloud) {
   std::unique_ptr<Progress> progress;
-  const auto sink = [&](const PartialCloud& part) {
+  DebugFigures figures(std::filesystem::path(options.output_path) / "debug", model);
+  SequenceCallbacks callbacks;
+  callbacks.sink = [&](const PartialCloud& part) {
     const std::array<uint32_t, 2> seen_by = {static_cast<uint32_t>(part.image_idx1),
                                              static_cast<uint32_t>(part.image_idx2)};
     for (const DensePoint& point : part.points) {
       cloud->Add({point.xyz, point.normal, point.rgb}, seen_by.data(), 2);
     }
   };
-  const auto show = [&](int64_t done, int64_t total) {
+  callbacks.progress = [&](int64_t done, int64_t total) {
     if (!progress) progress = std::make_unique<Progress>("Densification steps", total);
     progress->Update(done);
   };
+  if (options.densification.write_debug) {
+    callbacks.debug = [&](const PairDebug& pair) { figures.Write(pair); };
+  }
   SequenceReport sequence =
       DensifySequence(model, pictures, options.densification,
-                      EffectiveNumThreads(options.run.num_threads), sink, show);
+                      EffectiveNumThreads(options.run.num_threads), callbacks);
   if (progress) progress->Finish();
   return sequence;
 }
@@ -118,7 +124,7 @@ void PartialDensifierOptions::Bind(OptionTable* table) {
   table->AddRequired("output_path", &output_path,
                      "folder for fused.ply, fused.ply.vis, pairs.csv and run.json");
   table->Add("database_path", &database_path,
-             "COLMAP database with SeaPoints; empty = they are found again", "ours");
+             "COLMAP database with SeaPoints and matches; empty = they are found again", "ours");
   densification.Bind(table);
   extraction.Bind(table);
   matching.Bind(table);

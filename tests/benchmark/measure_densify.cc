@@ -80,14 +80,16 @@ Run RunOnce(const SparseModel& model, MemoryPictures* pictures,
   const double before = StatusMegabytes("VmRSS");
   const double match_before = pictures->MatchCpuSeconds();
   std::vector<std::vector<Eigen::Vector3f>> parts;  // as they come: no growing vector is copied
-  const auto sink = [&](const PartialCloud& part) {
+  SequenceCallbacks callbacks;
+  callbacks.sink = [&](const PartialCloud& part) {
     parts.emplace_back();
     parts.back().reserve(part.points.size());
     for (const DensePoint& point : part.points) parts.back().push_back(point.xyz);
   };
+  callbacks.progress = [](int64_t, int64_t) {};
   run.seconds = SecondsOf([&] {
-    run.report = DensifySequence(model, pictures, options, EffectiveNumThreads(num_threads), sink,
-                                 [](int64_t, int64_t) {});
+    run.report = DensifySequence(model, pictures, options, EffectiveNumThreads(num_threads),
+                                 callbacks);
   });
   run.match_cpu = pictures->MatchCpuSeconds() - match_before;
   const double peak = StatusMegabytes("VmHWM");

@@ -1,6 +1,7 @@
 // partial_densifier: what it writes, and models that do not fit the pictures.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
@@ -89,6 +90,43 @@ TEST_F(Densifier, SameBytesForOneAndTwoThreadsAndWithADatabase) {
             0);
   ASSERT_EQ(Densify({"--database_path", database}).exit_code, 0);
   EXPECT_TRUE(ReadBytes(folder_ / "dense" / "fused.ply") == ply);
+
+  // Matches of the database instead: verified and guided ones, so maybe not the same cloud.
+  ASSERT_EQ(
+      RunProgram(SEAPOINT_PROGRAM, {"sequential_matcher", "--database_path", database}).exit_code,
+      0);
+  ASSERT_EQ(Densify({"--database_path", database, "--num_threads", "1"}).exit_code, 0);
+  const std::string matched = ReadBytes(folder_ / "dense" / "fused.ply");
+  ASSERT_EQ(Densify({"--database_path", database, "--num_threads", "2"}).exit_code, 0);
+  EXPECT_TRUE(ReadBytes(folder_ / "dense" / "fused.ply") == matched);
+}
+
+TEST_F(Densifier, WriteDebugDrawsEveryPair) {
+  const std::vector<std::string> sequential = {"--PartialDensification.redundancy", "sequential",
+                                               "--PartialDensification.completion", "0"};
+  ASSERT_EQ(Densify(sequential).exit_code, 0);
+  const std::string ply = ReadBytes(folder_ / "dense" / "fused.ply");
+  EXPECT_FALSE(fs::exists(folder_ / "dense" / "debug"));
+  std::vector<std::string> with_debug = sequential;
+  with_debug.insert(with_debug.end(), {"--PartialDensification.write_debug", "1"});
+  const CliResult result = Densify(with_debug);
+  ASSERT_EQ(result.exit_code, 0) << result.Text();
+  EXPECT_TRUE(ReadBytes(folder_ / "dense" / "fused.ply") == ply);
+
+  std::map<std::string, int> num_figures;  // "fig10" -> count
+  for (const auto& entry : fs::directory_iterator(folder_ / "dense" / "debug")) {
+    const std::string name = entry.path().filename().string();
+    ASSERT_EQ(name.find("pair_000"), 0u) << name;
+    ++num_figures[name.substr(10, 5)];
+    const ColorImage figure = ReadColorImage(entry.path());
+    EXPECT_GE(figure.width, kStripWidth) << name;
+    EXPECT_NE(figure.data.front(), 0) << name;  // the title's ground
+  }
+  const int num_pairs = Report()["pairs"];
+  ASSERT_GE(num_pairs, 2);
+  EXPECT_EQ(num_figures,
+            (std::map<std::string, int>{
+                {"fig10", num_pairs - 1}, {"fig11", num_pairs - 1}, {"fig15", num_pairs - 1}}));
 }
 
 TEST_F(Densifier, PicturesThatAreNotThereAreLeftOut) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -12,6 +13,7 @@
 #include <set>
 
 #include "colmap_seapoint/base/error.h"
+#include "densify/pair_debug.h"
 #include "tests/synthetic/world.h"
 
 namespace colmap_seapoint {
@@ -170,17 +172,19 @@ struct Outcome {
   }
 };
 
-Outcome Densify(Strip* strip, const PartialDensificationOptions& options, int num_threads = 2) {
+Outcome Densify(Strip* strip, const PartialDensificationOptions& options, int num_threads = 2,
+                const std::function<void(const PairDebug&)>& debug = nullptr) {
   Outcome outcome;
   int64_t last_done = -1;
-  outcome.report = DensifySequence(
-      strip->Model(), strip, options, num_threads,
-      [&](const PartialCloud& cloud) { outcome.clouds.push_back(cloud); },
-      [&](int64_t done, int64_t total) {
-        EXPECT_GT(done, last_done);
-        EXPECT_LE(done, total);
-        last_done = done;
-      });
+  SequenceCallbacks callbacks;
+  callbacks.sink = [&](const PartialCloud& cloud) { outcome.clouds.push_back(cloud); };
+  callbacks.progress = [&](int64_t done, int64_t total) {
+    EXPECT_GT(done, last_done);
+    EXPECT_LE(done, total);
+    last_done = done;
+  };
+  callbacks.debug = debug;
+  outcome.report = DensifySequence(strip->Model(), strip, options, num_threads, callbacks);
   return outcome;
 }
 
@@ -318,6 +322,39 @@ TEST(DensifySequenceTest, EveryPictureAndPairOnceInTheSequence) {
     EXPECT_EQ(found.num_found, kNumPictures);
     EXPECT_EQ(found.num_matched, static_cast<int>(found.num_asked.size()));
     ExpectSameClouds(of_stored, of_found);
+  }
+}
+
+// The same clouds with figures as without, and figures that fit the report.
+TEST(DensifySequenceTest, DebugShowsWhatHappened) {
+  for (const std::string redundancy : {"sequential", "all"}) {
+    PartialDensificationOptions options;
+    options.redundancy = redundancy;
+    Strip strip(6);
+    const Outcome plain = Densify(&strip, options);
+    int num_shown = 0, num_with_previous = 0;
+    int64_t num_normal = 0;
+    const Outcome shown = Densify(&strip, options, 2, [&](const PairDebug& pair) {
+      EXPECT_EQ(pair.partial->cloud.points.size(), static_cast<size_t>(pair.report.num_points));
+      EXPECT_EQ(pair.view1.image_idx, pair.report.image_idx1);
+      EXPECT_EQ(pair.view2.image_idx, pair.report.image_idx2);
+      ++num_shown;
+      num_normal += static_cast<int64_t>(pair.normal.cloud.points.size());
+      if (pair.previous_color == nullptr) return;
+      ++num_with_previous;
+      EXPECT_EQ(pair.report.pass, "sequence");
+      EXPECT_EQ(pair.labels1.size(), pair.points1->size());
+      EXPECT_EQ(pair.previous_labels.size(), pair.previous_points->size());
+      EXPECT_GT(pair.interpair.size(), 100u);
+      if (redundancy == "sequential") {
+        EXPECT_EQ(pair.mask.OverlapRate(), pair.report.overlap);
+      }
+      EXPECT_EQ(pair.covered_range.empty(), redundancy == "sequential");
+    });
+    ExpectSameClouds(plain, shown);
+    EXPECT_EQ(num_shown, static_cast<int>(shown.clouds.size()));
+    EXPECT_GE(num_with_previous, 1);
+    EXPECT_GT(num_normal, shown.NumPoints());
   }
 }
 

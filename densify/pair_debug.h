@@ -1,0 +1,41 @@
+// What the paper's figures show of one pair (10, 11, 13, 15, 17), lent to whoever draws them.
+#pragma once
+
+#include <vector>
+
+#include "colmap_seapoint/base/features.h"
+#include "colmap_seapoint/base/image.h"
+#include "densify/densify_pair.h"
+#include "densify/densify_sequence.h"
+#include "densify/influence_mask.h"
+
+namespace colmap_seapoint {
+
+// Valid during the call that hands it over. "Previous" is the first picture of the pair before (V
+// of the paper; picture 1 of this pair is V + 2).
+struct PairDebug {
+  PairReport report;
+  View view1, view2;
+  const ColorImage* color1 = nullptr;
+  const std::vector<SeaPoint>* points1 = nullptr;
+  std::vector<SeaPointLabel> labels1;  // empty: no labels (completion pass)
+
+  // Interpair (paper 2.5). Without a previous pair all of it is unset.
+  int previous_image_idx = -1;
+  const ColorImage* previous_color = nullptr;
+  const std::vector<SeaPoint>* previous_points = nullptr;
+  std::vector<SeaPointLabel> previous_labels;
+  FeatureMatches interpair;      // idx1 in previous_points, idx2 in points1
+  InfluenceMask mask;            // on picture 1
+  double influence_radius1 = 0;  // pixels of picture 1
+  double influence_radius0 = 0;  // pixels of the previous picture
+
+  // Cells of picture 1 that were known before (ours, redundancy "all"): their range, 0 elsewhere.
+  CellGrid cells;
+  std::vector<float> covered_range;
+
+  const PairResult* partial = nullptr;
+  PairResult normal;  // what the pair gives when nothing counts as done before
+};
+
+}  // namespace colmap_seapoint
