@@ -156,9 +156,7 @@ int Program(const std::vector<std::string>& arguments) {
   o.image_path = filled.image_path;
   o.input_path = filled.input_path;
   o.arguments = set.given;
-  if (!set.set.database_path.empty()) {
-    o.arguments.insert(o.arguments.end(), {"--database_path", set.set.database_path});
-  }
+  o.database_path = set.set.database_path;
   const ProgramRow row = MeasureProgram(o);
   if (!set.output_path.empty()) WriteProgramRows(set.output_path, {row});
   std::cout << DensifyTables({{}, {}, {row}});

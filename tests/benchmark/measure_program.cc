@@ -44,6 +44,9 @@ void RunProgram(const ProgramOptions& options, ProgramRow* row) {
   std::vector<std::string> arguments = {
       "partial_densifier",         "--image_path",  options.image_path.string(), "--input_path",
       options.input_path.string(), "--output_path", output.path.string()};
+  if (!options.database_path.empty()) {
+    arguments.insert(arguments.end(), {"--database_path", options.database_path});
+  }
   arguments.insert(arguments.end(), options.arguments.begin(), options.arguments.end());
   std::vector<double> cpu, wall;
   for (int repeat = 0; repeat < options.num_repeats; ++repeat) {

@@ -13,6 +13,7 @@ struct ProgramOptions {
   std::string set_name;
   std::filesystem::path binary;  // colmap_seapoint
   std::filesystem::path image_path, input_path;
+  std::string database_path;           // or empty
   std::vector<std::string> arguments;  // further ones of partial_densifier
   int num_repeats = 3;                 // of both; the median counts
 };
