@@ -71,6 +71,8 @@ const RowColumns<HoldOutRow>& HoldOutColumns() {
                                           {"passed_near", &R::passed_near},
                                           {"passed_spacing", &R::passed_spacing},
                                           {"median_gsd", &R::median_gsd},
+                                          {"own_gsd", &R::own_gsd},
+                                          {"passed_sure", &R::passed_sure},
                                           {"cloud_points", &R::cloud_points}}};
   return kColumns;
 }

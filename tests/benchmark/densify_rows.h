@@ -76,6 +76,8 @@ struct HoldOutRow {
   double passed_near = kNotMeasured;     // the same of the near ones
   double passed_spacing = kNotMeasured;  // within 3 spacings of samples, of the eligible
   double median_gsd = kNotMeasured;      // distance of the near ones
+  double own_gsd = kNotMeasured;         // uncertainty of the points themselves in depth, median
+  double passed_sure = kNotMeasured;     // share passed of those whose own is up to 1 GSD
   double cloud_points = 0;
 };
 

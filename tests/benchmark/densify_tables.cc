@@ -26,6 +26,10 @@ each in full. `all` leaves out what any earlier pair has reconstructed and adds 
   Redundancy: points in an occupied square of 1 GSD (ground sampling distance), mean.
 - coverage: share of the surface seen by two pictures that has a point within 2 or 4 GSD. Cover kept:
   share of complete's points that have a point of the partial cloud within 2 sample spacings.
+- held-out points: every fifth point of the model is kept from the densifier, with the SeaPoints there;
+  looked for are those with three views and a reprojection error up to a pixel. GSD: depth in the first
+  view over focal length. A point's own uncertainty: its reprojection error over the tangent of its
+  largest parallax.
 - memory: peak during densification above what was held before, cloud not counted.
 
 )";
@@ -163,7 +167,8 @@ std::string HoldOutTable(const std::vector<HoldOutRow>& rows) {
   for (const HoldOutRow& row : rows) {
     table += Line({row.set, row.variant, Text(row.points, "%.0f"), Text(row.held, "%.0f"),
                    Text(row.eligible, "%.0f"), Percent(row.passed), Percent(row.passed_spacing),
-                   Percent(row.near), Percent(row.passed_near), Text(row.median_gsd, "%.2f")});
+                   Percent(row.near), Percent(row.passed_near), Text(row.median_gsd, "%.2f"),
+                   Text(row.own_gsd, "%.2f"), Percent(row.passed_sure)});
   }
   return table;
 }

@@ -84,7 +84,8 @@ TEST(DensifyTablesTest, CompletionTruthProgramAndHoldOut) {
             std::string::npos)
       << text;
   EXPECT_EQ(text.find("| reef | complete_all | –"), std::string::npos);
-  EXPECT_NE(text.find("| cave | all | 100 | 20 | 10 | 50.0 | – | – | – | – |"), std::string::npos)
+  EXPECT_NE(text.find("| cave | all | 100 | 20 | 10 | 50.0 | – | – | – | – | – | – |"),
+            std::string::npos)
       << text;
   EXPECT_NE(
       text.find("| mole | 0 | 10.0 | 3.00 | 0.00 | 2.00 | 1.50 | 0.00 | 0.3000 | 0 | default"),

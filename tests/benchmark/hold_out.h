@@ -15,6 +15,8 @@ struct HeldPoint {
   Eigen::Vector3f xyz;
   double gsd = 0;      // depth in its first view over the focal length there, model units
   double spacing = 0;  // between samples, in GSD
+  double own_gsd =
+      0;  // its own uncertainty in depth: reprojection error over tan(largest parallax)
 };
 
 struct HoldOut {
@@ -29,7 +31,7 @@ struct HoldOut {
 HoldOut HoldOutPoints(const SparseModel& model, int every,
                       const PartialDensificationOptions& densification);
 
-// Fills in near, passed, passed_near, passed_spacing and median_gsd.
+// Fills in near, passed, passed_near, passed_spacing, median_gsd, own_gsd and passed_sure.
 void ScoreHoldOut(const std::vector<HeldPoint>& eligible, const std::vector<Eigen::Vector3f>& cloud,
                   HoldOutRow* row);
 

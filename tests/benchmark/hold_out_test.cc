@@ -71,9 +71,22 @@ TEST(HoldOutTest, EligibleAreSeenThriceAndExact) {
   EXPECT_EQ(MedianGsd(SparseModel()), 0);
 }
 
+TEST(HoldOutTest, OwnUncertaintyByLargestParallax) {
+  SparseModel model = Model();
+  model.images[1].cam_from_world.translation = {-10, 0, 0};  // stands at x = 10
+  PartialDensificationOptions options;
+  const HoldOut held = HoldOutPoints(model, 1, options);
+  ASSERT_EQ(held.eligible.size(), 3u);
+  // The point (5, 0, 15) from (0, 0, 0) and (10, 0, 0): twice atan(1 / 3), of tangent 0.75.
+  EXPECT_NEAR(held.eligible[1].own_gsd, 0.5 / 0.75, 1e-9);
+  EXPECT_GT(HoldOutPoints(Model(), 1, options).eligible[1].own_gsd, 1e3);  // no parallax at all
+}
+
 TEST(HoldOutTest, SharesByDistance) {
   std::vector<HeldPoint> points;
-  for (float x : {0.0f, 100.0f, 200.0f, 300.0f}) points.push_back({{x, 0, 0}, 0.5, 2});
+  for (float x : {0.0f, 100.0f, 200.0f, 300.0f}) {
+    points.push_back({{x, 0, 0}, 0.5, 2, x < 150 ? 0.75 : 1.25});
+  }
   // 1, 5, 8 and 40 GSD away.
   const std::vector<Eigen::Vector3f> cloud = {{0, 0.5, 0}, {100, 0, 2.5}, {204, 0, 0}, {320, 0, 0}};
   HoldOutRow row;
@@ -84,6 +97,8 @@ TEST(HoldOutTest, SharesByDistance) {
   EXPECT_DOUBLE_EQ(row.passed_near, 1.0 / 3);
   EXPECT_EQ(row.passed_spacing, 0.5);
   EXPECT_EQ(row.median_gsd, 5);
+  EXPECT_EQ(row.own_gsd, 1);
+  EXPECT_EQ(row.passed_sure, 0.5);  // of the first two
   ScoreHoldOut({}, cloud, &row);
   EXPECT_EQ(row.eligible, 0);
   HoldOutRow bare;
