@@ -20,17 +20,27 @@ std::vector<int> SequenceOrder(const SparseModel& model) {
   return order;
 }
 
+// The right pictures of a rig behind all others; else the order is kept.
+std::vector<int> TrackFirst(std::vector<int> order, const StereoRig& rig) {
+  if (rig.is_right.empty()) return order;
+  std::stable_partition(order.begin(), order.end(), [&](int image_idx) {
+    return !rig.is_right[static_cast<size_t>(image_idx)];
+  });
+  return order;
+}
+
 }  // namespace
 
 SequenceReport DensifySequence(const SparseModel& model, PictureSource* source,
                                const PartialDensificationOptions& options, int num_threads,
-                               const SequenceCallbacks& callbacks) {
-  SequenceState state(model, SequenceOrder(model), source, options, num_threads, callbacks);
+                               const SequenceCallbacks& callbacks, const StereoRig& rig) {
+  SequenceState state(model, TrackFirst(SequenceOrder(model), rig), rig, source, options,
+                      num_threads, callbacks);
   const int num_pictures = state.NumPictures();
   const int64_t total = num_pictures * (options.completion ? 2 : 1);
 
   int first = 0;
-  while (first + 1 < num_pictures) {
+  while (state.CanStartPair(first)) {
     const int second = state.SelectSecond(first);
     if (second < num_pictures) {
       state.DensifyNewAreas(first, second);

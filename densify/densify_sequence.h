@@ -12,6 +12,7 @@
 #include "colmap_seapoint/base/sparse_model.h"
 #include "densify/partial_cloud.h"
 #include "densify/partial_densification_options.h"
+#include "densify/stereo_rig.h"
 
 namespace colmap_seapoint {
 
@@ -70,8 +71,10 @@ struct SequenceCallbacks {
 
 // Densifies every pair of the model's pictures, taken in the order of their names (natural sort:
 // "2" before "10"). Same clouds for any num_threads, with or without `debug`.
+// With a rig, its right pictures are no part of that track, and a picture's pair is completed by
+// its simultaneous right one, where there is one that can be read.
 SequenceReport DensifySequence(const SparseModel& model, PictureSource* source,
                                const PartialDensificationOptions& options, int num_threads,
-                               const SequenceCallbacks& callbacks);
+                               const SequenceCallbacks& callbacks, const StereoRig& rig = {});
 
 }  // namespace colmap_seapoint

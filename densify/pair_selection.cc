@@ -33,4 +33,15 @@ int SelectNextFirst(int second, int num_pictures, double max_overlap,
   return overlap(candidate + 1) < kMinOverlap ? candidate - 1 : candidate;
 }
 
+int SelectNextStereoFirst(int first, int num_pictures, double max_overlap,
+                          const std::function<double(int)>& overlap) {
+  const int last = num_pictures - 1;
+  for (int candidate = first + 1; candidate <= last; ++candidate) {
+    const double rate = overlap(candidate);
+    if (rate > max_overlap && candidate < last) continue;
+    return rate < kMinOverlap && candidate > first + 1 ? candidate - 1 : candidate;
+  }
+  return num_pictures;
+}
+
 }  // namespace colmap_seapoint

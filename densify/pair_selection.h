@@ -24,4 +24,10 @@ double MeanMotion(const std::vector<SeaPoint>& points1, const std::vector<SeaPoi
 int SelectNextFirst(int second, int num_pictures, double max_overlap,
                     const std::function<double(int)>& overlap);
 
+// The same where a picture's pair is completed by its simultaneous one (paper 4), so that the last
+// picture can start a pair too: the first one beyond `first` whose overlap with it is at most
+// max_overlap, or the one before it where it no longer overlaps (by a tenth), or the last one.
+int SelectNextStereoFirst(int first, int num_pictures, double max_overlap,
+                          const std::function<double(int)>& overlap);
+
 }  // namespace colmap_seapoint

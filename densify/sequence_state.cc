@@ -19,7 +19,7 @@ std::pair<int, int> Ordered(int a, int b) { return {std::min(a, b), std::max(a, 
 
 }  // namespace
 
-SequenceState::SequenceState(const SparseModel& model, std::vector<int> order,
+SequenceState::SequenceState(const SparseModel& model, std::vector<int> order, const StereoRig& rig,
                              PictureSource* source, const PartialDensificationOptions& options,
                              int num_threads, const SequenceCallbacks& callbacks)
     : model_(model),
@@ -28,7 +28,21 @@ SequenceState::SequenceState(const SparseModel& model, std::vector<int> order,
       num_threads_(num_threads),
       callbacks_(callbacks),
       cache_(source),
-      covisible_(CovisiblePictures(model, order_)) {}
+      covisible_(CovisiblePictures(model, order_)) {
+  std::vector<int> position_of(order_.size());
+  for (int position = 0; position < NumPictures(); ++position) {
+    position_of[static_cast<size_t>(ImageIdxAt(position))] = position;
+  }
+  for (const int image_idx : order_) {
+    const int right = rig.right_of.empty() ? -1 : rig.right_of[static_cast<size_t>(image_idx)];
+    right_of_.push_back(right < 0 ? -1 : position_of[static_cast<size_t>(right)]);
+    num_track_ += rig.is_right.empty() || rig.is_right[static_cast<size_t>(image_idx)] == 0;
+  }
+}
+
+bool SequenceState::CanStartPair(int first) const {
+  return first + 1 < num_track_ || (first < num_track_ && RightOf(first) >= 0);
+}
 
 const PosedImage& SequenceState::ImageAt(int position) const {
   return model_.images[static_cast<size_t>(ImageIdxAt(position))];
@@ -58,13 +72,16 @@ std::shared_ptr<const FeatureMatches> SequenceState::MatchesOf(int position1, in
 
 int SequenceState::SelectSecond(int first) {
   PairReport report = NewReport(first, -1, "sequence");
+  const int right = RightOf(first);
+  if (right >= 0) cache_.Prefetch(ImageIdxAt(right));
   if (!cache_.Get(ImageIdxAt(first))) {
     report.skipped = "the picture cannot be read";
     report_.pairs.push_back(report);
     return NumPictures();
   }
+  if (right >= 0 && cache_.Get(ImageIdxAt(right))) return right;
   report.skipped = "no following picture matches it";
-  const int end = std::min(NumPictures(), first + 1 + kMaxSecondTries);
+  const int end = std::min(num_track_, first + 1 + kMaxSecondTries);
   for (int second = first + 1; second < end; ++second) {
     if (!cache_.Get(ImageIdxAt(second))) continue;
     const auto matches = MatchesOf(first, second);
@@ -90,10 +107,15 @@ double SequenceState::InterpairOverlap(int first, int candidate) {
 }
 
 int SequenceState::SelectNextFirst(int first, int second) {
-  const int next = colmap_seapoint::SelectNextFirst(
-      second, NumPictures(), options_.max_overlap,
-      [&](int candidate) { return InterpairOverlap(first, candidate); });
-  for (int skipped = second + 1; skipped < std::min(next, NumPictures() - 1); ++skipped) {
+  const auto overlap = [&](int candidate) { return InterpairOverlap(first, candidate); };
+  const bool simultaneous = second == RightOf(first);
+  int next = simultaneous ? SelectNextStereoFirst(first, num_track_, options_.max_overlap, overlap)
+                          : colmap_seapoint::SelectNextFirst(second, num_track_,
+                                                             options_.max_overlap, overlap);
+  // Where the last picture of the track has a simultaneous one, it adds its own pair.
+  if (!simultaneous && second == num_track_ - 1 && RightOf(second) >= 0) next = second;
+  const int passed_over = (simultaneous ? first : second) + 1;
+  for (int skipped = passed_over; skipped < std::min(next, num_track_ - 1); ++skipped) {
     PairReport report = NewReport(skipped, -1, "sequence");
     report.skipped = "overlaps too much with the pair before";
     report_.pairs.push_back(report);
@@ -250,7 +272,7 @@ void SequenceState::ShowPair(int first, int second, const Overlap& overlap,
 
 void SequenceState::DensifyNewAreas(int first, int second) {
   // Decoded while this pair is densified: one of them will most often start the next pair.
-  for (int ahead = 1; ahead <= 2 && second + ahead < NumPictures(); ++ahead) {
+  for (int ahead = 1; ahead <= 2 && second + ahead < num_track_; ++ahead) {
     cache_.Prefetch(ImageIdxAt(second + ahead));
   }
   PairReport report = NewReport(first, second, "sequence");

@@ -16,17 +16,21 @@
 
 namespace colmap_seapoint {
 
-// Positions are those of the sequence.
+// Positions are those of the sequence; those of a rig's right pictures come after the track.
 class SequenceState {
  public:
-  SequenceState(const SparseModel& model, std::vector<int> order, PictureSource* source,
-                const PartialDensificationOptions& options, int num_threads,
+  // `order`: image_idx by position, right pictures last.
+  SequenceState(const SparseModel& model, std::vector<int> order, const StereoRig& rig,
+                PictureSource* source, const PartialDensificationOptions& options, int num_threads,
                 const SequenceCallbacks& callbacks);
 
   int NumPictures() const { return static_cast<int>(order_.size()); }
 
-  // The picture that completes the pair of `first` (paper 2.6): the next one, unless the motion is
-  // too small. NumPictures() when there is none: reported as skipped.
+  // Whether another picture follows on the track, or `first` has a simultaneous one.
+  bool CanStartPair(int first) const;
+  // The picture that completes the pair of `first`: its simultaneous right one (paper 4); else the
+  // next one, unless the motion is too small (paper 2.6). NumPictures() when there is none:
+  // reported as skipped.
   int SelectSecond(int first);
   // Overlap, labels, seeds, propagation, reprojection (paper 2.5 to 2.7).
   void DensifyNewAreas(int first, int second);
@@ -49,6 +53,7 @@ class SequenceState {
   View ViewAt(int position) const;
   const PosedImage& ImageAt(int position) const;
   int ImageIdxAt(int position) const { return order_[static_cast<size_t>(position)]; }
+  int RightOf(int position) const { return right_of_[static_cast<size_t>(position)]; }
   double LongerSide(int position) const;
   CellGrid CellsAt(int position) const;
 
@@ -67,6 +72,8 @@ class SequenceState {
 
   const SparseModel& model_;
   const std::vector<int> order_;
+  int num_track_ = 0;          // positions of the track; those behind it are right pictures
+  std::vector<int> right_of_;  // position -> position of the simultaneous right picture, or -1
   const PartialDensificationOptions& options_;
   const int num_threads_;
   const SequenceCallbacks& callbacks_;

@@ -9,6 +9,7 @@
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/commands/feature_extractor.h"
 #include "colmap_seapoint/commands/partial_densifier.h"
+#include "colmap_seapoint/commands/read_rig.h"
 #include "colmap_seapoint/commands/prepare_database.h"
 #include "colmap_seapoint/commands/reconstruction_summary.h"
 #include "colmap_seapoint/commands/run_mapper.h"
@@ -266,13 +267,14 @@ RunReport Reconstruction::DensifyOnce(const fs::path& model, const std::string& 
   densifier.input_path = model.string();
   densifier.output_path = (workspace_ / "dense" / name).string();
   densifier.database_path = database_path_.string();
+  densifier.rig = options_.rig;
   densifier.densification = options_.densification;
   densifier.extraction = options_.extraction;
   densifier.matching = options_.matching;
   densifier.run = options_.run;
   const std::string stage = "dense_" + name;
   const std::string fingerprint =
-      HashText(kDensificationVersion + mapper_fingerprint_ + name +
+      HashText(kDensificationVersion + mapper_fingerprint_ + name + "," + options_.rig + "," +
                OptionsFingerprint(OptionValues(options_.densification)));
   const fs::path output = densifier.output_path;
   auto done = state_.ReadIfDone(stage, fingerprint);
@@ -327,12 +329,14 @@ RunReport Reconstruction::WriteReport() {
 
 void Validate(const AutomaticReconstructorOptions& options) {
   for (const std::string& problem :
-       {options.reader.Check(), options.extraction.Check(), options.densification.Check()}) {
+       {options.reader.Check(), options.extraction.Check(), options.densification.Check(),
+        CheckRig(options.rig)}) {
     if (!problem.empty()) throw UsageError(problem);
   }
   if (!fs::is_directory(options.image_path)) {
     throw Error(options.image_path, "there is no such folder", "check --image_path");
   }
+  CheckRigFolders(options.rig, options.image_path);
 }
 
 }  // namespace
@@ -350,6 +354,7 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
              "after mapping, adjust every model once more with the principal point free; not with "
              "--ImageReader.camera_params or --Mapper.ba_refine_*",
              "ours");
+  table->Add("rig", &rig, kRigHelp, "paper 4");
   reader.Bind(table);
   extraction.Bind(table);
   pairs.Bind(table);

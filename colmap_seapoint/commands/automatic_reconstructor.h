@@ -21,6 +21,7 @@ struct AutomaticReconstructorOptions {
   std::string colmap_path = "colmap";
   std::string matcher = "auto";
   bool adjust_principal_point = true;
+  std::string rig;
   ImageReaderOptions reader;
   SeaPointExtractionOptions extraction;
   SequentialPairOptions pairs;

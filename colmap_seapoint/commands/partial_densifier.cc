@@ -11,6 +11,7 @@
 #include "colmap_seapoint/commands/debug_figures.h"
 #include "colmap_seapoint/commands/model_pictures.h"
 #include "colmap_seapoint/commands/pairs_csv.h"
+#include "colmap_seapoint/commands/read_rig.h"
 #include "colmap_seapoint/io/atomic_file.h"
 #include "colmap_seapoint/io/colmap_model.h"
 #include "colmap_seapoint/io/ply.h"
@@ -19,7 +20,8 @@ namespace colmap_seapoint {
 namespace {
 
 void Validate(const PartialDensifierOptions& options) {
-  for (const std::string& problem : {options.densification.Check(), options.extraction.Check()}) {
+  for (const std::string& problem :
+       {options.densification.Check(), options.extraction.Check(), CheckRig(options.rig)}) {
     if (!problem.empty()) throw UsageError(problem);
   }
   if (!std::filesystem::is_directory(options.image_path)) {
@@ -78,7 +80,7 @@ void LogPairSeconds(const SequenceReport& sequence) {
 }
 
 SequenceReport Densify(const PartialDensifierOptions& options, const SparseModel& model,
-                       ModelPictures* pictures, CloudWriter* cloud) {
+                       const StereoRig& rig, ModelPictures* pictures, CloudWriter* cloud) {
   std::unique_ptr<Progress> progress;
   DebugFigures figures(std::filesystem::path(options.output_path) / "debug", model);
   SequenceCallbacks callbacks;
@@ -98,7 +100,7 @@ SequenceReport Densify(const PartialDensifierOptions& options, const SparseModel
   }
   SequenceReport sequence =
       DensifySequence(model, pictures, options.densification,
-                      EffectiveNumThreads(options.run.num_threads), callbacks);
+                      EffectiveNumThreads(options.run.num_threads), callbacks, rig);
   if (progress) progress->Finish();
   return sequence;
 }
@@ -125,6 +127,7 @@ void PartialDensifierOptions::Bind(OptionTable* table) {
                      "folder for fused.ply, fused.ply.vis, pairs.csv and run.json");
   table->Add("database_path", &database_path,
              "COLMAP database with SeaPoints and matches; empty = they are found again", "ours");
+  table->Add("rig", &rig, kRigHelp, "paper 4");
   densification.Bind(table);
   extraction.Bind(table);
   matching.Bind(table);
@@ -149,9 +152,10 @@ RunReport DensifyModel(const PartialDensifierOptions& options) {
                  " holds SeaPoints of no picture of the model: they are "
                  "found again");
     }
+    const StereoRig rig = ReadRig(options.rig, options.image_path, options.input_path, model);
     DescribeInputs(options, model, &report);
     CloudWriter cloud(output / "fused.ply");
-    sequence = Densify(options, model, &pictures, &cloud);
+    sequence = Densify(options, model, rig, &pictures, &cloud);
     FillReport(model, sequence, &report);
     LogPairSeconds(sequence);
     report.points = static_cast<int64_t>(cloud.NumPoints());

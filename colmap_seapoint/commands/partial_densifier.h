@@ -16,6 +16,7 @@ struct PartialDensifierOptions {
   std::string input_path;
   std::string output_path;
   std::string database_path;
+  std::string rig;
   PartialDensificationOptions densification;
   SeaPointExtractionOptions extraction;
   SeaPointMatchingOptions matching;

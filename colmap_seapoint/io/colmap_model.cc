@@ -144,6 +144,28 @@ void AddPoint(const RecordPlace& place, uint64_t point3D_id, SparsePoint point,
   }
 }
 
+std::vector<Frame> ReadFrames(const std::filesystem::path& dir, const SparseModel& model) {
+  const bool binary = HasAllFiles(dir, ".bin");
+  const std::filesystem::path path = dir / (binary ? "frames.bin" : "frames.txt");
+  if (!IsFile(path)) return {};
+  std::set<uint64_t> known, used;
+  for (const PosedImage& image : model.images) known.insert(image.image_id);
+  std::vector<Frame> frames;
+  for (const std::vector<uint64_t>& ids : binary ? ReadFramesBinary(path) : ReadFramesText(path)) {
+    Frame frame;
+    for (const uint64_t id : ids) {
+      if (known.count(id) == 0) continue;
+      if (!used.insert(id).second) {
+        throw Error(path.string(), "image " + std::to_string(id) + " stands in two frames",
+                    kRemedy);
+      }
+      frame.push_back(static_cast<uint32_t>(id));
+    }
+    if (frame.size() > 1) frames.push_back(frame);
+  }
+  return frames;
+}
+
 bool IsSparseModel(const std::filesystem::path& dir) {
   return HasAllFiles(dir, ".bin") || HasAllFiles(dir, ".txt");
 }

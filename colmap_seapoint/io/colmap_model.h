@@ -1,8 +1,10 @@
-// COLMAP's model folders, binary and text, 3.8 to 4.x (rigs.bin / frames.bin are ignored: the
-// camera poses of images.bin already contain them). The only place that knows their format.
+// COLMAP's model folders, binary and text, 3.8 to 4.x (rigs.bin is ignored: the camera poses of
+// images.bin already contain it). The only place that knows their format.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <vector>
 
 #include "colmap_seapoint/base/sparse_model.h"
 
@@ -13,6 +15,13 @@ namespace colmap_seapoint {
 // finite, for camera models that FindCameraModel does not know, for image names that are absolute
 // or contain "..", and for point/image ids that point nowhere.
 SparseModel ReadSparseModel(const std::filesystem::path& dir);
+
+using Frame = std::vector<uint32_t>;  // image_ids
+
+// Which pictures of a model a rig took at the same moment, two at least: frames.bin, or frames.txt
+// of a text model (3.12 and later). Empty when there is no such file. Throws Error for a damaged
+// file and for a picture that stands in two frames.
+std::vector<Frame> ReadFrames(const std::filesystem::path& dir, const SparseModel& model);
 
 // True when `dir` holds cameras/images/points3D in either form.
 bool IsSparseModel(const std::filesystem::path& dir);

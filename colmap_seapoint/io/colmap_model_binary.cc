@@ -15,6 +15,7 @@ static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "COLMAP's files are lit
 
 constexpr size_t kMaxNameBytes = 4096;
 constexpr size_t kFeatureBytes = 2 * sizeof(double) + sizeof(uint64_t);
+constexpr int32_t kCameraSensor = 0;  // COLMAP's SensorType::CAMERA
 constexpr size_t kTrackElementBytes = 2 * sizeof(uint32_t);
 
 // Reads values one after the other and knows how many bytes are left.
@@ -49,11 +50,16 @@ class BinaryReader {
   uint64_t ReadCount(size_t min_bytes, const char* what) {
     const RecordPlace place = Place();
     const uint64_t count = Read<uint64_t>();
+    ExpectRoomFor(count, min_bytes, what, place);
+    return count;
+  }
+
+  void ExpectRoomFor(uint64_t count, size_t min_bytes, const char* what,
+                     const RecordPlace& place) const {
     if (count > (size_ - offset_) / min_bytes) {
       place.Fail("a count of " + std::to_string(count) + " " + what +
                  " is more than the file can hold: it is truncated or damaged");
     }
-    return count;
   }
 
   std::string ReadName() {
@@ -203,6 +209,29 @@ void ReadModelBinary(const std::filesystem::path& dir, SparseModel* model) {
   ReadCameras(dir / "cameras.bin", model);
   ReadImages(dir / "images.bin", model);
   ReadPoints(dir / "points3D.bin", model);
+}
+
+std::vector<std::vector<uint64_t>> ReadFramesBinary(const std::filesystem::path& path) {
+  constexpr size_t kIdsAndPoseBytes = 2 * sizeof(uint32_t) + 7 * sizeof(double);
+  constexpr size_t kDataBytes = 4 + 4 + 8;
+  BinaryReader reader(path);
+  const uint64_t count = reader.ReadCount(kIdsAndPoseBytes + 4, "frames");
+  std::vector<std::vector<uint64_t>> frames(count);
+  for (std::vector<uint64_t>& frame : frames) {
+    char ids_and_pose[kIdsAndPoseBytes];
+    reader.ReadBytes(ids_and_pose, sizeof(ids_and_pose));
+    const RecordPlace place = reader.Place();
+    const auto num_data = reader.Read<uint32_t>();
+    reader.ExpectRoomFor(num_data, kDataBytes, "pictures of a frame", place);
+    for (uint32_t i = 0; i < num_data; ++i) {
+      const auto sensor_type = reader.Read<int32_t>();
+      reader.Read<uint32_t>();  // sensor_id
+      const auto data_id = reader.Read<uint64_t>();
+      if (sensor_type == kCameraSensor) frame.push_back(data_id);
+    }
+  }
+  reader.ExpectEnd();
+  return frames;
 }
 
 void WriteSparseModelBinary(const std::filesystem::path& dir, const SparseModel& model) {

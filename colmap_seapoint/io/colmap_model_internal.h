@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "colmap_seapoint/base/sparse_model.h"
 
@@ -34,5 +35,9 @@ void AddPoint(const RecordPlace& place, uint64_t point3D_id, SparsePoint point, 
 
 void ReadModelBinary(const std::filesystem::path& dir, SparseModel* model);
 void ReadModelText(const std::filesystem::path& dir, SparseModel* model);
+
+// The picture ids of every frame's cameras, as they stand there.
+std::vector<std::vector<uint64_t>> ReadFramesBinary(const std::filesystem::path& path);
+std::vector<std::vector<uint64_t>> ReadFramesText(const std::filesystem::path& path);
 
 }  // namespace colmap_seapoint

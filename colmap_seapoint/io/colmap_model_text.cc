@@ -237,6 +237,27 @@ void ReadModelText(const std::filesystem::path& dir, SparseModel* model) {
   ReadPoints(dir / "points3D.txt", model);
 }
 
+std::vector<std::vector<uint64_t>> ReadFramesText(const std::filesystem::path& path) {
+  std::vector<std::vector<uint64_t>> frames;
+  LineReader lines(path);
+  while (lines.NextRecord()) {
+    const RecordPlace place = lines.Place();
+    WordReader words(place, lines.Line());
+    words.Number<uint32_t>("FRAME_ID");
+    words.Number<uint32_t>("RIG_ID");
+    for (int i = 0; i < 7; ++i) words.Number<double>("RIG_FROM_WORLD");
+    const auto num_data = words.Number<uint32_t>("NUM_DATA_IDS");
+    frames.emplace_back();
+    for (uint32_t i = 0; i < num_data; ++i) {
+      const bool is_camera = words.Word("SENSOR_TYPE") == "CAMERA";
+      words.Number<uint32_t>("SENSOR_ID");
+      const auto data_id = words.Number<uint64_t>("DATA_ID");
+      if (is_camera) frames.back().push_back(data_id);
+    }
+  }
+  return frames;
+}
+
 void WriteSparseModelText(const std::filesystem::path& dir, const SparseModel& model) {
   CheckWritableDir(dir);
   AtomicFile cameras(dir / "cameras.txt");

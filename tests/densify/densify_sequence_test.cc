@@ -2,97 +2,45 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstdlib>
-#include <cstring>
-#include <functional>
 #include <map>
-#include <mutex>
-#include <optional>
 #include <random>
 #include <set>
+#include <string>
+#include <vector>
 
-#include "colmap_seapoint/base/error.h"
-#include "densify/pair_debug.h"
-#include "tests/synthetic/world.h"
+#include "tests/densify/test_survey.h"
 
 namespace colmap_seapoint {
 namespace {
 
 constexpr double kDepth = 2;
+constexpr double kFocal = 210;
 constexpr int kNumPictures = 9;
 
-// A strip over a seabed with a step across and a block on it, 80 % forward overlap; landmarks are
-// its SeaPoints and its triangulated points, the same descriptor in every picture.
-class Strip : public PictureSource {
+// A strip over a seabed with a step across and a block on it, 80 % forward overlap. Names whose
+// natural order differs from both file order and alphabet: picture10 before picture9 in the
+// alphabet, and the model lists them backwards.
+class Strip : public TestSurvey {
  public:
-  explicit Strip(int num_pictures = kNumPictures) : world_(Seabed()) {
-    const Camera camera = MildCamera(CameraModel::kOpenCV, 210, 240, 180);
-    model_.cameras[1] = camera;
+  explicit Strip(int num_pictures = kNumPictures) : TestSurvey(Seabed(), TestCamera()) {
     std::mt19937 generator(4);
     std::uniform_real_distribution<double> jitter(-1, 1);
+    std::vector<Viewpoint> viewpoints;
     for (int i = 0; i < num_pictures; ++i) {
-      const double advance = 0.2 * 240 * kDepth / 210;  // a fifth of a picture
-      viewpoints_.push_back(
-          StandAt(camera, {advance * i, 0.03 * jitter(generator), 0.03 * jitter(generator)},
-                  {2 * jitter(generator), 2 * jitter(generator), 5 * jitter(generator)}));
-      pictures_.push_back(TakePicture(world_, viewpoints_.back()));
+      const double advance = 0.2 * 240 * kDepth / kFocal;  // a fifth of a picture
+      const double y = 0.03 * jitter(generator), z = 0.03 * jitter(generator);
+      const double pitch = 2 * jitter(generator), yaw = 2 * jitter(generator);
+      viewpoints.push_back(
+          StandAt(TestCamera(), {advance * i, y, z}, {pitch, yaw, 5 * jitter(generator)}));
     }
-    AddImages();
-    AddLandmarks();
-  }
-
-  ColorImage ReadColor(int image_idx) override {
-    if (image_idx == unreadable_) throw Error("a.jpg", "is cut short", "copy it again");
-    const std::lock_guard<std::mutex> lock(mutex_);
-    ++num_decoded[image_idx];
-    return pictures_[static_cast<size_t>(image_idx)];
-  }
-  std::optional<Features> ReadSeaPoints(int image_idx) override {
-    if (!stores_seapoints) return std::nullopt;
-    return features_[static_cast<size_t>(image_idx)];
-  }
-  // Knows the picture by its pixels.
-  Features FindSeaPoints(const GrayImage& picture) override {
-    ++num_found;
-    for (size_t i = 0; i < pictures_.size(); ++i) {
-      const GrayImage gray = GrayOf(pictures_[i]);
-      size_t same = 0;
-      while (same < gray.data.size() && std::abs(gray.data[same] - picture.data[same]) <= 1) ++same;
-      if (same == gray.data.size()) return features_[i];
+    for (int i = num_pictures - 1; i >= 0; --i) {
+      AddPicture("picture" + std::to_string(5 + i) + ".jpg", viewpoints[static_cast<size_t>(i)]);
     }
-    ADD_FAILURE() << "no picture of the strip";
-    return {};
+    AddLandmarks(3000, {-1, 5}, {-1.2, 1.2});
   }
-  std::optional<FeatureMatches> ReadMatches(int image_idx1, int image_idx2) override {
-    ++num_asked[{std::min(image_idx1, image_idx2), std::max(image_idx1, image_idx2)}];
-    if (!stores_matches) return std::nullopt;
-    --num_matched;
-    return Match(features_[static_cast<size_t>(image_idx1)],
-                 features_[static_cast<size_t>(image_idx2)]);
-  }
-  FeatureMatches Match(const Features& features1, const Features& features2) override {
-    ++num_matched;
-    std::map<Descriptor, uint32_t> second;
-    for (uint32_t j = 0; j < features2.points.size(); ++j) second[features2.descriptors[j]] = j;
-    FeatureMatches matches;
-    for (uint32_t i = 0; i < features1.points.size(); ++i) {
-      const auto found = second.find(features1.descriptors[i]);
-      if (found != second.end()) matches.push_back({i, found->second});
-    }
-    return matches;
-  }
-
-  void MakeUnreadable(int image_idx) { unreadable_ = image_idx; }
-  const SparseModel& Model() const { return model_; }
-  const World& GetWorld() const { return world_; }
-
-  bool stores_seapoints = true, stores_matches = true;
-  std::map<int, int> num_decoded;                // by image_idx
-  std::map<std::pair<int, int>, int> num_asked;  // by image_idx, smaller first
-  int num_found = 0, num_matched = 0;            // SeaPoints, matches: not stored ones
 
  private:
+  static Camera TestCamera() { return MildCamera(CameraModel::kOpenCV, kFocal, 240, 180); }
   static World Seabed() {
     const NoiseTexture texture(42, 0.16, 4);
     return World({{{0, 0, kDepth}, {50, 0, 0}, {0, 50, 0}},
@@ -100,116 +48,15 @@ class Strip : public PictureSource {
                   {{2.6, 0, 1.8}, {0.3, 0, 0}, {0, 5, 0}}},
                  texture);
   }
-
-  // Names whose natural order differs from both file order and alphabet: picture10 before picture9
-  // in the alphabet, and the model lists them backwards.
-  void AddImages() {
-    const size_t count = viewpoints_.size();
-    std::vector<Viewpoint> viewpoints(viewpoints_.rbegin(), viewpoints_.rend());
-    std::vector<ColorImage> pictures(pictures_.rbegin(), pictures_.rend());
-    viewpoints_ = viewpoints;
-    pictures_ = pictures;
-    for (size_t i = 0; i < count; ++i) {
-      PosedImage image;
-      image.image_id = static_cast<uint32_t>(11 + i);
-      image.camera_id = 1;
-      image.name = "picture" + std::to_string(5 + count - 1 - i) + ".jpg";
-      image.cam_from_world = viewpoints_[i].cam_from_world;
-      model_.images.push_back(image);
-    }
-    features_.resize(count);
-  }
-
-  void AddLandmarks() {
-    std::mt19937 generator(6);
-    std::uniform_real_distribution<double> x(-1, 5), y(-1.2, 1.2);
-    for (uint64_t id = 1; id <= 3000; ++id) {
-      const auto point = world_.Cast({x(generator), y(generator), 0}, {0, 0, 1});
-      Descriptor descriptor{};
-      std::memcpy(descriptor.data(), &id, sizeof(id));
-      SparsePoint landmark;
-      landmark.xyz = *point;
-      for (size_t i = 0; i < viewpoints_.size(); ++i) {
-        const auto pixel = PixelOf(world_, viewpoints_[i], *point);
-        if (!pixel) continue;
-        SeaPoint sea_point;
-        sea_point.x = static_cast<float>(pixel->x());
-        sea_point.y = static_cast<float>(pixel->y());
-        features_[i].points.push_back(sea_point);
-        features_[i].descriptors.push_back(descriptor);
-        PosedImage& image = model_.images[i];
-        landmark.track.push_back({image.image_id, static_cast<uint32_t>(image.points2D.size())});
-        image.points2D.push_back(*pixel);
-        image.point3D_ids.push_back(id);
-      }
-      if (landmark.track.size() >= 2) {
-        model_.points3D[id] = landmark;
-      } else {
-        for (const auto& element : landmark.track) {
-          model_.images[element.image_id - 11].point3D_ids.back() = kNoPoint3D;
-        }
-      }
-    }
-  }
-
-  World world_;
-  std::vector<Viewpoint> viewpoints_;
-  std::vector<ColorImage> pictures_;
-  std::vector<Features> features_;
-  SparseModel model_;
-  int unreadable_ = -1;
-  std::mutex mutex_;
 };
 
-struct Outcome {
-  SequenceReport report;
-  std::vector<PartialCloud> clouds;
-
-  int64_t NumPoints() const {
-    int64_t count = 0;
-    for (const PartialCloud& cloud : clouds) count += static_cast<int64_t>(cloud.points.size());
-    return count;
-  }
-};
-
-Outcome Densify(Strip* strip, const PartialDensificationOptions& options, int num_threads = 2,
-                const std::function<void(const PairDebug&)>& debug = nullptr) {
-  Outcome outcome;
-  int64_t last_done = -1;
-  SequenceCallbacks callbacks;
-  callbacks.sink = [&](const PartialCloud& cloud) { outcome.clouds.push_back(cloud); };
-  callbacks.progress = [&](int64_t done, int64_t total) {
-    EXPECT_GT(done, last_done);
-    EXPECT_LE(done, total);
-    last_done = done;
-  };
-  callbacks.debug = debug;
-  outcome.report = DensifySequence(strip->Model(), strip, options, num_threads, callbacks);
-  return outcome;
-}
-
-// Squares of the ground, four GSD wide, that hold a point within two GSD of the surface.
 std::set<std::pair<int, int>> CoveredSquares(const Strip& strip, const Outcome& outcome) {
-  const double gsd = kDepth / 210;
-  std::set<std::pair<int, int>> squares;
-  for (const PartialCloud& cloud : outcome.clouds) {
-    for (const DensePoint& point : cloud.points) {
-      if (strip.GetWorld().Distance(point.xyz.cast<double>()) > 2 * gsd) continue;
-      squares.insert({static_cast<int>(std::floor(point.xyz.x() / (4 * gsd))),
-                      static_cast<int>(std::floor(point.xyz.y() / (4 * gsd)))});
-    }
-  }
-  return squares;
+  const double gsd = kDepth / kFocal;
+  return CoveredSquares(strip.GetWorld(), outcome.clouds, 4 * gsd, 2 * gsd);
 }
 
 double ShareOnSurface(const Strip& strip, const Outcome& outcome) {
-  int64_t num_good = 0;
-  for (const PartialCloud& cloud : outcome.clouds) {
-    for (const DensePoint& point : cloud.points) {
-      num_good += strip.GetWorld().Distance(point.xyz.cast<double>()) <= 4 * kDepth / 210;
-    }
-  }
-  return static_cast<double>(num_good) / static_cast<double>(outcome.NumPoints());
+  return ShareOnSurface(strip.GetWorld(), outcome, 4 * kDepth / kFocal);
 }
 
 Strip& TestStrip() {
@@ -278,18 +125,6 @@ TEST(DensifySequenceTest, ReportAddsUp) {
   EXPECT_EQ(outcome.report.pairs[0].image_idx2, kNumPictures - 2);
   EXPECT_EQ(outcome.report.pairs[0].overlap, 0);
   EXPECT_EQ(outcome.report.pairs[0].num_oa, 0);
-}
-
-void ExpectSameClouds(const Outcome& one, const Outcome& other) {
-  ASSERT_EQ(one.clouds.size(), other.clouds.size());
-  ASSERT_GT(one.NumPoints(), 30000);
-  for (size_t c = 0; c < one.clouds.size(); ++c) {
-    ASSERT_EQ(one.clouds[c].points.size(), other.clouds[c].points.size());
-    for (size_t i = 0; i < one.clouds[c].points.size(); ++i) {
-      const DensePoint &a = one.clouds[c].points[i], &b = other.clouds[c].points[i];
-      ASSERT_TRUE(a.xyz == b.xyz && a.normal == b.normal && a.rgb == b.rgb);
-    }
-  }
 }
 
 TEST(DensifySequenceTest, SameCloudsWithAnyNumberOfThreads) {

@@ -95,6 +95,23 @@ TEST(SelectNextFirstTest, AlwaysAdvancesAndAlwaysEnds) {
   }
 }
 
+// Paper 4: the simultaneous picture completes the pair, so the last picture can start one.
+TEST(SelectNextStereoFirstTest, FirstBelowTheLimit) {
+  EXPECT_EQ(SelectNextStereoFirst(0, 9, 0.6, Advancing(0, 80)), 2);
+  EXPECT_EQ(SelectNextStereoFirst(0, 9, 0.59, Advancing(0, 80)), 3);
+  EXPECT_EQ(SelectNextStereoFirst(0, 9, 0.6, Advancing(0, 50)), 1);
+  EXPECT_EQ(SelectNextStereoFirst(7, 9, 0.6, [](int) { return 0.99; }), 8);
+  EXPECT_EQ(SelectNextStereoFirst(2, 9, 0.6, [](int) { return 0.99; }), 8);
+  EXPECT_EQ(SelectNextStereoFirst(8, 9, 0.6, [](int) { return 0.5; }), 9);
+}
+
+TEST(SelectNextStereoFirstTest, NoStripIsLostBetweenTwoPairs) {
+  const auto jump = [](int position) { return position < 5 ? 0.8 : 0.05; };
+  EXPECT_EQ(SelectNextStereoFirst(2, 9, 0.6, jump), 4);
+  EXPECT_EQ(SelectNextStereoFirst(4, 9, 0.6, jump), 5);
+  EXPECT_EQ(SelectNextStereoFirst(2, 6, 0.6, jump), 4);
+}
+
 SeaPoint At(double x, double y) {
   SeaPoint point;
   point.x = static_cast<float>(x);

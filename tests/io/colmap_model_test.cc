@@ -104,6 +104,62 @@ TEST(ColmapModel, BinaryIsPreferred) {
   EXPECT_EQ(ReadSparseModel(dir.Path()).images.size(), 2u);
 }
 
+// As COLMAP 3.12 writes them: u64 count; {u32 frame_id, u32 rig_id, 7 f64, u32 count, {i32 sensor
+// type, u32 sensor_id, u64 data_id}}. Type 0 is a camera, 1 an inertial sensor.
+std::string FramesBinary(const std::vector<std::vector<std::pair<int32_t, uint64_t>>>& frames) {
+  std::string bytes;
+  const auto put = [&](auto value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  };
+  put(static_cast<uint64_t>(frames.size()));
+  uint32_t frame_id = 0;
+  for (const auto& frame : frames) {
+    put(++frame_id);
+    put(uint32_t{1});
+    for (int i = 0; i < 7; ++i) put(0.5);
+    put(static_cast<uint32_t>(frame.size()));
+    uint32_t sensor_id = 0;
+    for (const auto& [type, data_id] : frame) {
+      put(type);
+      put(++sensor_id);
+      put(data_id);
+    }
+  }
+  return bytes;
+}
+
+TEST(ColmapModel, Frames) {
+  const TempDir dir;
+  WriteSparseModelText(dir.Path(), MakeModel());
+  EXPECT_TRUE(ReadFrames(dir.Path(), MakeModel()).empty());
+  const std::string pose = " 1 1 0 0 0 0.5 -1e-3 2 ";
+  WriteBytes(dir / "frames.txt", "# Frame list\n1" + pose + "3 CAMERA 1 4 CAMERA 2 9 IMU 1 4\n2" +
+                                     pose + "2 CAMERA 1 5 CAMERA 2 6\n");
+  EXPECT_EQ(ReadFrames(dir.Path(), MakeModel()), (std::vector<Frame>{{4, 9}}));
+  WriteBytes(dir / "frames.txt", "1" + pose + "1 CAMERA 1 4\n2" + pose + "1 CAMERA 2 9\n");
+  EXPECT_TRUE(ReadFrames(dir.Path(), MakeModel()).empty());
+  WriteBytes(dir / "frames.txt", "1" + pose + "2 CAMERA 1 4");
+  EXPECT_ERROR(ReadFrames(dir.Path(), MakeModel()), "frames.txt: line 1: the line ends before");
+  WriteBytes(dir / "frames.txt", "1" + pose + "2 CAMERA 1 4 CAMERA 2 4");
+  EXPECT_ERROR(ReadFrames(dir.Path(), MakeModel()), "image 4 stands in two frames");
+
+  WriteSparseModelBinary(dir.Path(), MakeModel());
+  EXPECT_TRUE(ReadFrames(dir.Path(), MakeModel()).empty());  // the text belongs to the text model
+  const std::string bytes = FramesBinary({{{0, 9}, {1, 4}, {0, 4}}, {{0, 5}, {0, 6}}});
+  WriteBytes(dir / "frames.bin", bytes);
+  EXPECT_EQ(ReadFrames(dir.Path(), MakeModel()), (std::vector<Frame>{{9, 4}}));
+  for (size_t size = 0; size < bytes.size(); ++size) {
+    WriteBytes(dir / "frames.bin", bytes.substr(0, size));
+    EXPECT_ERROR(ReadFrames(dir.Path(), MakeModel()), "frames.bin");
+  }
+  WriteBytes(dir / "frames.bin", bytes + "x");
+  EXPECT_ERROR(ReadFrames(dir.Path(), MakeModel()), "bytes follow the last record");
+  std::string many = bytes;
+  many[8 + 64 + 3] = 127;  // two thousand million pictures in the first frame
+  WriteBytes(dir / "frames.bin", many);
+  EXPECT_ERROR(ReadFrames(dir.Path(), MakeModel()), "pictures of a frame is more than the file");
+}
+
 TEST(ColmapModel, MissingFiles) {
   const TempDir dir;
   EXPECT_ERROR(ReadSparseModel(dir / "missing"), "there is no such folder");
