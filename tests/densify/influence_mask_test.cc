@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 
 namespace colmap_seapoint {
 namespace {
@@ -60,6 +61,42 @@ TEST(InfluenceMaskTest, ReaMatchesErase) {
                  Marked(mask, 6, 5) || Marked(mask, 8, 4));
     EXPECT_TRUE(Marked(mask, 5, 5) && Marked(mask, 5, 2));
     EXPECT_EQ(NumMarked(mask), 13 - 5);
+  }
+}
+
+// Masks and labels of random matches against the definition, cell by cell.
+TEST(InfluenceMaskTest, AgreesWithBruteForce) {
+  std::mt19937 generator(3);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int trial = 0; trial < 60; ++trial) {
+    const int width = 30 + static_cast<int>(generator() % 200);
+    const int height = 30 + static_cast<int>(generator() % 150);
+    const CellGrid grid(width, height, 1 + static_cast<int>(generator() % 16));
+    const double radius = 2 + 40 * unit(generator);
+    std::vector<SeaPoint> points;
+    std::vector<SeaPointLabel> previous;
+    FeatureMatches matches;
+    for (uint32_t i = 0; i < 40; ++i) {
+      points.push_back(At(width * unit(generator), height * unit(generator)));
+      previous.push_back(unit(generator) < 0.7 ? kPA : kREA);
+      if (unit(generator) < 0.3) matches.push_back({39 - i, i});
+    }
+    const InfluenceMask mask = MakeInfluenceMask(grid, points, matches, previous, radius);
+    const auto near = [&](size_t cell, SeaPointLabel label) {
+      return std::any_of(matches.begin(), matches.end(), [&](const FeatureMatch& match) {
+        const SeaPoint& point = points[match.idx2];
+        return previous[match.idx1] == label &&
+               (grid.Center(cell) - Eigen::Vector2d(point.x, point.y)).norm() <= radius;
+      });
+    };
+    for (size_t cell = 0; cell < grid.Size(); ++cell) {
+      ASSERT_EQ(mask.marked[cell] != 0, near(cell, kPA) && !near(cell, kREA)) << trial;
+    }
+    const auto labels = LabelSeaPoints(mask, points, matches, previous, radius);
+    for (size_t i = 0; i < points.size(); ++i) {
+      const size_t cell = grid.IndexOf(points[i].x, points[i].y);
+      ASSERT_EQ(labels[i], near(cell, kREA) ? kREA : near(cell, kPA) ? kOA : kNA) << trial;
+    }
   }
 }
 
