@@ -13,7 +13,7 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr size_t kMaxCovisible = 12;
-constexpr double kMinGain = 0.015;  // share of a picture's cells that makes a pair worth it
+constexpr double kMinGain = 0.003;  // share of a picture's cells that makes a pair worth it
 constexpr double kMinParallaxDeg = 2;
 constexpr double kMaxParallaxDeg = 40;
 constexpr double kRimMargin = 0.01;  // of the partner's sides: no window fits nearer

@@ -1,7 +1,9 @@
+#include "densify/consistency.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "densify/propagation.h"
+#include "colmap_seapoint/base/parallel.h"
 
 namespace colmap_seapoint {
 
@@ -9,7 +11,8 @@ namespace {
 
 constexpr float kMaxStep = 1.0f;   // disparity between neighbouring samples of one surface
 constexpr int kMinAgreeing = 3;    // of a sample's 8 neighbours
-constexpr int kMinSpeckSize = 30;  // samples
+constexpr int kMinSpeckSize = 12;  // nodes
+constexpr uint8_t kMinSupport = 6;  // samples of one surface, in a window of 25 or more
 
 float SurfaceTolerance(const PartialDisparity& partial) {
   return kMaxStep * std::max(1.0f, 0.5f * static_cast<float>(partial.grid.step));
@@ -20,42 +23,39 @@ void Remove(size_t node, PartialDisparity* partial) {
   partial->score[node] = -1;
 }
 
-// Two samples of one row that land on the same place of picture 2 at different disparities cannot
-// both be right (one of them is occluded there): the better score stays.
-void RemoveDoubleClaims(PartialDisparity* partial) {
+// Two samples of a row that land on the same place of picture 2 at different disparities cannot both
+// be right (one of them is occluded there): the better score stays. `owner` is lent.
+void RemoveDoubleClaims(int b, PartialDisparity* partial, std::vector<int>* owner) {
   const SampleGrid& grid = partial->grid;
   const float tolerance = 1.0f + SurfaceTolerance(*partial);
-  std::vector<int> owner;
-  for (int b = 0; b < grid.height; ++b) {
-    const size_t row = static_cast<size_t>(b) * static_cast<size_t>(grid.width);
-    auto place = [&](size_t node, int a) {
-      return static_cast<int>(std::lround((grid.PixelX(a) - partial->disparity[node]) / grid.step));
-    };
-    int low = 0, high = -1;
-    for (int a = 0; a < grid.width; ++a) {
-      const size_t node = row + static_cast<size_t>(a);
-      if (partial->disparity[node] <= 0) continue;
-      const int at = place(node, a);
-      low = high < low ? at : std::min(low, at);
-      high = std::max(high, at);
+  const size_t row = static_cast<size_t>(b) * static_cast<size_t>(grid.width);
+  const float* disparity = partial->disparity.data() + row;
+  const float* score = partial->score.data() + row;
+  float smallest = 1e9f, largest = 0;
+  for (int a = 0; a < grid.width; ++a) {
+    if (disparity[a] <= 0) continue;
+    smallest = std::min(smallest, disparity[a]);
+    largest = std::max(largest, disparity[a]);
+  }
+  if (largest == 0) return;
+  const float scale = 1.0f / static_cast<float>(grid.step);
+  // Places are counted from that of sample 0 at the largest disparity.
+  const auto place = [&](int a) {
+    return a + static_cast<int>((largest - disparity[a]) * scale + 0.5f);
+  };
+  owner->assign(static_cast<size_t>(grid.width) + static_cast<size_t>((largest - smallest) * scale) +
+                    2, -1);
+  for (int a = 0; a < grid.width; ++a) {
+    if (disparity[a] <= 0) continue;
+    int& holder = (*owner)[static_cast<size_t>(place(a))];
+    if (holder < 0) {
+      holder = a;
+      continue;
     }
-    if (high < low) continue;
-    owner.assign(static_cast<size_t>(high - low) + 1, -1);
-    for (int a = 0; a < grid.width; ++a) {
-      const size_t node = row + static_cast<size_t>(a);
-      if (partial->disparity[node] <= 0) continue;
-      int& holder = owner[static_cast<size_t>(place(node, a) - low)];
-      if (holder < 0) {
-        holder = a;
-        continue;
-      }
-      const size_t other = row + static_cast<size_t>(holder);
-      const bool same_surface =
-          std::abs(partial->disparity[node] - partial->disparity[other]) <= tolerance;
-      const bool better = partial->score[node] > partial->score[other];
-      if (!same_surface) Remove(better ? other : node, partial);
-      if (better) holder = a;
-    }
+    const bool same_surface = std::abs(disparity[a] - disparity[holder]) <= tolerance;
+    const int better = score[a] > score[holder] ? a : holder;
+    if (!same_surface) Remove(row + static_cast<size_t>(better == a ? holder : a), partial);
+    holder = better;
   }
 }
 
@@ -64,7 +64,8 @@ void ForEachOf8(const SampleGrid& grid, int a, int b, const Visit& visit) {
   for (int v = std::max(0, b - 1); v <= std::min(grid.height - 1, b + 1); ++v) {
     for (int u = std::max(0, a - 1); u <= std::min(grid.width - 1, a + 1); ++u) {
       if (u != a || v != b) {
-        visit(static_cast<size_t>(v) * static_cast<size_t>(grid.width) + static_cast<size_t>(u));
+        visit(static_cast<size_t>(v) * static_cast<size_t>(grid.width) + static_cast<size_t>(u),
+              grid.PixelX(u), grid.PixelY(v));
       }
     }
   }
@@ -72,10 +73,10 @@ void ForEachOf8(const SampleGrid& grid, int a, int b, const Visit& visit) {
 
 // What is reconstructed already counts as a neighbour, so that the rim of a new area stays.
 bool AgreesWithGate(float gate, float disparity) {
-  return gate > 0 && !SampleGate::Admits(gate, disparity);
+  return gate > 0 && !Gate::Admits(gate, disparity);
 }
 
-void RemoveLoners(const std::vector<float>& gate, PartialDisparity* partial) {
+void RemoveLoners(const Gate& gate, PartialDisparity* partial) {
   const SampleGrid& grid = partial->grid;
   const float tolerance = SurfaceTolerance(*partial);
   std::vector<size_t> loners;
@@ -86,10 +87,10 @@ void RemoveLoners(const std::vector<float>& gate, PartialDisparity* partial) {
       const float disparity = partial->disparity[node];
       if (disparity <= 0) continue;
       int agreeing = 0;
-      ForEachOf8(grid, a, b, [&](size_t neighbor) {
+      ForEachOf8(grid, a, b, [&](size_t neighbor, int x, int y) {
         const float other = partial->disparity[neighbor];
         const bool same = other > 0 && std::abs(other - disparity) <= tolerance;
-        if (same || AgreesWithGate(gate[neighbor], disparity)) ++agreeing;
+        if (same || AgreesWithGate(gate.At(x, y), disparity)) ++agreeing;
       });
       if (agreeing < kMinAgreeing) loners.push_back(node);
     }
@@ -97,7 +98,7 @@ void RemoveLoners(const std::vector<float>& gate, PartialDisparity* partial) {
   for (const size_t node : loners) Remove(node, partial);
 }
 
-void RemoveSpecks(const std::vector<float>& gate, PartialDisparity* partial) {
+void RemoveSpecks(const Gate& gate, PartialDisparity* partial) {
   const SampleGrid& grid = partial->grid;
   const float tolerance = SurfaceTolerance(*partial);
   std::vector<uint8_t> seen(grid.Size(), 0);
@@ -111,8 +112,8 @@ void RemoveSpecks(const std::vector<float>& gate, PartialDisparity* partial) {
       const size_t node = speck[next];
       const float disparity = partial->disparity[node];
       const int a = static_cast<int>(node) % grid.width, b = static_cast<int>(node) / grid.width;
-      ForEachOf8(grid, a, b, [&](size_t neighbor) {
-        if (AgreesWithGate(gate[neighbor], disparity)) ++num_supporting;
+      ForEachOf8(grid, a, b, [&](size_t neighbor, int x, int y) {
+        if (AgreesWithGate(gate.At(x, y), disparity)) ++num_supporting;
         const float other = partial->disparity[neighbor];
         if (seen[neighbor] || other <= 0 || std::abs(other - disparity) > tolerance) return;
         seen[neighbor] = 1;
@@ -126,10 +127,38 @@ void RemoveSpecks(const std::vector<float>& gate, PartialDisparity* partial) {
 
 }  // namespace
 
-void RemoveInconsistent(const std::vector<float>& gate, PartialDisparity* partial) {
-  RemoveDoubleClaims(partial);
-  RemoveLoners(gate, partial);
-  RemoveSpecks(gate, partial);
+void RemoveInconsistent(const Gate& gate, PartialDisparity* nodes) {
+  std::vector<int> owner;
+  for (int b = 0; b < nodes->grid.height; ++b) RemoveDoubleClaims(b, nodes, &owner);
+  RemoveLoners(gate, nodes);
+  RemoveSpecks(gate, nodes);
+}
+
+void RemoveContradictions(const Gate& gate, int num_threads, PartialDisparity* samples) {
+  const SampleGrid& grid = samples->grid;
+  constexpr int kBand = 16;  // rows a task
+  ParallelFor(num_threads, (grid.height + kBand - 1) / kBand, [&](int64_t band) {
+    std::vector<int> owner;
+    const int begin = static_cast<int>(band) * kBand, end = std::min(grid.height, begin + kBand);
+    for (int b = begin; b < end; ++b) {
+      const size_t row = static_cast<size_t>(b) * static_cast<size_t>(grid.width);
+      for (int a = 0; a < grid.width; ++a) {
+        const size_t sample = row + static_cast<size_t>(a);
+        const float disparity = samples->disparity[sample];
+        if (disparity <= 0 || Gate::Admits(gate.At(grid.PixelX(a), grid.PixelY(b)), disparity)) {
+          continue;
+        }
+        Remove(sample, samples);
+      }
+      RemoveDoubleClaims(b, samples, &owner);
+    }
+  });
+}
+
+void RemoveUnsupported(PartialSurface* surface) {
+  for (size_t sample = 0; sample < surface->grid.Size(); ++sample) {
+    if (surface->support[sample] < kMinSupport) surface->disparity[sample] = 0;
+  }
 }
 
 }  // namespace colmap_seapoint

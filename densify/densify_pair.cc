@@ -5,8 +5,11 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/timer.h"
+#include "densify/consistency.h"
 #include "densify/disparity_to_cloud.h"
 #include "densify/rectification.h"
+#include "densify/refinement.h"
+#include "densify/surface_fit.h"
 
 namespace colmap_seapoint {
 
@@ -14,7 +17,14 @@ namespace {
 
 constexpr double kSamplesPerPicture = 0.75e6;
 constexpr int kSamplesPerCell = 4;         // along each side
+constexpr int kMinCell = 2 * kNodeStep;    // pixels: a cell holds nodes
 constexpr double kMaxRowDifference = 2.0;  // between a seed's two rect rows, pixels
+constexpr int kMinWindow = 8;  // pixels: a smaller window of a picture holds nothing
+// Growth only has to find the surface, at every node: what is weak is judged when it is refined.
+constexpr int kGrowthWindow = 7;      // pixels
+constexpr float kGrowthZncc = 0.85f;  // of min_zncc
+constexpr int kSmoothing = 4;         // pixels around a sample that its plane is fitted to
+constexpr float kMaxSlope = 0.75f;    // pixels of disparity a pixel, on one surface
 constexpr size_t kMinSeeds = 5;            // in new areas: fewer are not worth rectifying for
 
 bool CellIsClosed(const PairInput& input, size_t cell) {
@@ -65,35 +75,32 @@ void CutToNewAreas(const PairInput& input, const PairGeometry& geometry,
   }
 }
 
-// Every sample's gate (see SampleGate), and the cell of picture 1 it lies in (-1: outside).
-struct GatedSamples {
-  std::vector<float> gate;
+// The gate, and the cell of picture 1 that each of its nodes lies in (-1: outside).
+struct GatedNodes {
+  Gate gate;
   std::vector<int> cell;
 };
 
-GatedSamples MakeGate(const PairInput& input, const PairGeometry& geometry, const RectMap& map1,
-                      const SampleGrid& grid) {
-  GatedSamples samples{std::vector<float>(grid.Size(), SampleGate::kClosed),
-                       std::vector<int>(grid.Size(), -1)};
-  for (int b = 0; b < grid.height; ++b) {
-    for (int a = 0; a < grid.width; ++a) {
-      const auto source = map1.Source(grid.PixelX(a), grid.PixelY(b));
+GatedNodes MakeGate(const PairInput& input, const PairGeometry& geometry, const RectMap& map1,
+                    const RectWindow& window) {
+  GatedNodes gated{Gate(window, Gate::kClosed), {}};
+  const SampleGrid& nodes = gated.gate.Nodes();
+  gated.cell.assign(nodes.Size(), -1);
+  for (int b = 0; b < nodes.height; ++b) {
+    for (int a = 0; a < nodes.width; ++a) {
+      const auto source = map1.Source(nodes.PixelX(a), nodes.PixelY(b));
       if (!source) continue;
-      const size_t node =
-          static_cast<size_t>(b) * static_cast<size_t>(grid.width) + static_cast<size_t>(a);
+      const size_t node = nodes.NodeOf(a, b);
       const size_t cell = input.cells.IndexOf(source->x(), source->y());
-      samples.cell[node] = static_cast<int>(cell);
+      gated.cell[node] = static_cast<int>(cell);
       if (CellIsClosed(input, cell)) continue;
-      samples.gate[node] = SampleGate::kOpen;
+      gated.gate[node] = Gate::kOpen;
       if (CellIsFree(input, cell)) continue;
-      // range = depth * |ray|, disparity = focal * baseline / depth.
-      const double x = grid.RectX(a) / geometry.focal, y = grid.RectY(b) / geometry.focal;
-      samples.gate[node] =
-          static_cast<float>(geometry.focal * geometry.baseline * std::sqrt(x * x + y * y + 1) /
-                             input.covered_range[cell]);
+      gated.gate[node] = static_cast<float>(
+          geometry.DisparityAtRange(nodes.RectX(a), nodes.RectY(b), input.covered_range[cell]));
     }
   }
-  return samples;
+  return gated;
 }
 
 // Pixel pairs -> seeds in the rect frame; those off the epipolar line, behind the cameras or in
@@ -109,40 +116,15 @@ std::vector<Seed> MakeSeeds(const PairInput& input, const PairGeometry& geometry
     const Seed seed{rect1->x(), rect1->y(), rect1->x() - rect2->x()};
     if (seed.disparity < 1) continue;
     if (!CellIsFree(input, cell)) {
-      const double x = seed.x / geometry.focal, y = seed.y / geometry.focal;
-      const double covered = geometry.focal * geometry.baseline * std::sqrt(x * x + y * y + 1) /
-                             input.covered_range[cell];
-      if (!SampleGate::Admits(static_cast<float>(covered), static_cast<float>(seed.disparity))) {
+      const double covered =
+          geometry.DisparityAtRange(seed.x, seed.y, input.covered_range[cell]);
+      if (!Gate::Admits(static_cast<float>(covered), static_cast<float>(seed.disparity))) {
         continue;
       }
     }
     seeds.push_back(seed);
   }
   return seeds;
-}
-
-RectPicture Rectify(const RectMap& map, const RectWindow& window, const GrayImage& gray,
-                    int num_threads) {
-  RectPicture picture;
-  picture.window = window;
-  map.Rectify(gray, num_threads, &picture.gray, &picture.valid);
-  return picture;
-}
-
-std::vector<float> FilledShare(const PartialDisparity& partial, const std::vector<int>& cell_of,
-                               size_t num_cells) {
-  std::vector<int> matched(num_cells, 0), all(num_cells, 0);
-  for (size_t node = 0; node < partial.disparity.size(); ++node) {
-    if (cell_of[node] < 0) continue;
-    ++all[static_cast<size_t>(cell_of[node])];
-    if (partial.disparity[node] > 0) ++matched[static_cast<size_t>(cell_of[node])];
-  }
-  std::vector<float> filled(num_cells, 0);
-  for (size_t cell = 0; cell < num_cells; ++cell) {
-    if (all[cell] > 0)
-      filled[cell] = static_cast<float>(matched[cell]) / static_cast<float>(all[cell]);
-  }
-  return filled;
 }
 
 PairResult Failed(const std::string& why) {
@@ -160,7 +142,8 @@ int SampleStep(const Camera& camera, const PartialDensificationOptions& options)
 }
 
 CellGrid CellsOf(const Camera& camera, const PartialDensificationOptions& options) {
-  return CellGrid(camera.width, camera.height, kSamplesPerCell * SampleStep(camera, options));
+  const int cell = std::max(kMinCell, kSamplesPerCell * SampleStep(camera, options));
+  return CellGrid(camera.width, camera.height, cell);
 }
 
 PairResult DensifyPair(const PairInput& input, const PartialDensificationOptions& options,
@@ -177,35 +160,42 @@ PairResult DensifyPair(const PairInput& input, const PartialDensificationOptions
   const double longer_side = std::max(input.view1.camera.width, input.view1.camera.height);
   CutToNewAreas(input, *geometry, seeds, options.max_expansion * longer_side,
                 options.window_size / 2, &window1, &window2);
-  const int step = SampleStep(input.view1.camera, options);
-  const SampleGrid grid(window1, step);
-  if (grid.Size() == 0 || window2.width == 0 || window2.height == 0) {
+  if (std::min(window1.width, window2.width) < kMinWindow || window1.height < kMinWindow) {
     return Failed("the pictures do not overlap");
   }
   const RectMap map1(*geometry, false, window1, num_threads);
   const RectMap map2(*geometry, true, window2, num_threads);
-  const RectPicture picture1 = Rectify(map1, window1, *input.gray1, num_threads);
-  const RectPicture picture2 = Rectify(map2, window2, *input.gray2, num_threads);
-  const GatedSamples samples = MakeGate(input, *geometry, map1, grid);
+  const RectPicture picture1 = map1.Rectify(*input.gray1, num_threads);
+  const RectPicture picture2 = map2.Rectify(*input.gray2, num_threads);
+  const GatedNodes nodes = MakeGate(input, *geometry, map1, window1);
   PairResult result;
   result.rectification_seconds = rectification_timer.WallSeconds();
 
   const Timer propagation_timer;
-  const PropagationOptions propagation = {
-      options.window_size, static_cast<float>(options.min_zncc),
-      std::max(1, static_cast<int>(options.max_expansion * longer_side / step))};
-  PartialDisparity partial =
-      Propagate(picture1, picture2, grid, samples.gate, seeds, propagation, num_threads);
-  RemoveInconsistent(samples.gate, &partial);
+  const float min_zncc = static_cast<float>(options.min_zncc);
+  const int max_generations = std::max(
+      1, static_cast<int>(options.max_expansion * longer_side / kNodeStep) - kMaxRefinementSpread);
+  PartialDisparity coarse =
+      Propagate(picture1, picture2, nodes.gate, seeds,
+                {kGrowthWindow, kGrowthZncc * min_zncc, max_generations}, num_threads);
+  RemoveInconsistent(nodes.gate, &coarse);
+  const int step = SampleStep(input.view1.camera, options);
+  result.partial = Refine(picture1, picture2, coarse, {options.window_size, min_zncc, step},
+                          num_threads);
+  RemoveContradictions(nodes.gate, num_threads, &result.partial);
+  PartialSurface surface =
+      FitSurface(result.partial, std::max(2, kSmoothing / step), kMaxSlope, num_threads);
+  RemoveUnsupported(&surface);
   result.propagation_seconds = propagation_timer.WallSeconds();
 
   result.num_seeds = static_cast<int>(seeds.size());
-  result.num_failed_seeds = partial.num_failed_seeds;
-  result.filled = FilledShare(partial, samples.cell, input.cells.Size());
-  result.cloud = MakePartialCloud(partial, *geometry, map1, *input.color1, num_threads);
+  result.num_failed_seeds = coarse.num_failed_seeds;
+  result.cloud = MakePartialCloud(surface, *geometry, map1, *input.color1, num_threads);
   result.cloud.image_idx1 = input.view1.image_idx;
   result.cloud.image_idx2 = input.view2.image_idx;
-  result.footprint = MakeFootprint(partial, *geometry, samples.cell, result.filled, input.cells);
+  CellTally tally = TallyCells(surface, *geometry, nodes.cell, input.cells);
+  result.filled = std::move(tally.filled);
+  result.footprint = std::move(tally.footprint);
   return result;
 }
 

@@ -41,6 +41,7 @@ struct PairInput {
 
 struct PairResult {
   std::string failure;  // why there is nothing, or empty
+  PartialDisparity partial;  // what the cloud was made of, before it was smoothed
   PartialCloud cloud;
   CloudFootprint footprint;
   std::vector<float> filled;  // share of each cell's samples that matched, 0..1
@@ -51,7 +52,7 @@ struct PairResult {
 
 // Pixels between samples: `options.step`, or about 0.75 million samples a picture.
 int SampleStep(const Camera& camera, const PartialDensificationOptions& options);
-// The cells at which overlap and coverage of a picture are kept: 4 x 4 samples.
+// The cells at which overlap and coverage of a picture are kept: 4 x 4 samples, 8 pixels at least.
 CellGrid CellsOf(const Camera& camera, const PartialDensificationOptions& options);
 
 // Same result for any number of threads.

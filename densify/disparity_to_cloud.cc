@@ -1,8 +1,8 @@
 #include "densify/disparity_to_cloud.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "colmap_seapoint/base/parallel.h"
@@ -11,134 +11,137 @@ namespace colmap_seapoint {
 
 namespace {
 
-constexpr int kNormalRadius = 2;      // samples around a point that its plane is fitted to
-constexpr int kMinNormalSupport = 6;  // of them
 constexpr float kMinFilledCell = 0.5f;
 
-// Least squares of disparity = c + a u + b v around a sample, in samples; false when degenerate.
-bool FitDisparityPlane(const PartialDisparity& partial, int a, int b, double* slope_x,
-                       double* slope_y) {
-  const SampleGrid& grid = partial.grid;
-  const size_t node =
-      static_cast<size_t>(b) * static_cast<size_t>(grid.width) + static_cast<size_t>(a);
-  const float center = partial.disparity[node];
-  const float tolerance = 0.75f * static_cast<float>(kNormalRadius * std::max(1, grid.step));
-  double n = 0, su = 0, sv = 0, suu = 0, suv = 0, svv = 0, sd = 0, sud = 0, svd = 0;
-  for (int v = std::max(0, b - kNormalRadius); v <= std::min(grid.height - 1, b + kNormalRadius);
-       ++v) {
-    for (int u = std::max(0, a - kNormalRadius); u <= std::min(grid.width - 1, a + kNormalRadius);
-         ++u) {
-      const float disparity =
-          partial.disparity[static_cast<size_t>(v) * static_cast<size_t>(grid.width) +
-                            static_cast<size_t>(u)];
-      if (disparity <= 0 || std::abs(disparity - center) > tolerance) continue;
-      const double du = u - a, dv = v - b, d = disparity - center;
-      n += 1;
-      su += du;
-      sv += dv;
-      suu += du * du;
-      suv += du * dv;
-      svv += dv * dv;
-      sd += d;
-      sud += du * d;
-      svd += dv * d;
+const float* RowOf(const std::vector<float>& values, const SampleGrid& grid, int b) {
+  return values.data() + static_cast<size_t>(b) * static_cast<size_t>(grid.width);
+}
+
+std::array<uint8_t, 3> ColorAt(const ColorImage& color, float x, float y) {
+  const int column = std::clamp(static_cast<int>(x), 0, color.width - 1);
+  const int row = std::clamp(static_cast<int>(y), 0, color.height - 1);
+  const uint8_t* rgb = color.Row(row) + 3 * static_cast<size_t>(column);
+  return {rgb[0], rgb[1], rgb[2]};
+}
+
+// The points of one row of samples.
+class RowToPoints {
+ public:
+  RowToPoints(const PartialSurface& surface, const PairGeometry& geometry, const RectMap& map1,
+              const ColorImage& color1)
+      : surface_(surface),
+        map1_(map1),
+        color1_(color1),
+        focal_(static_cast<float>(geometry.focal)),
+        focal_baseline_(static_cast<float>(geometry.focal * geometry.baseline)),
+        world_from_rect_(geometry.world_from_rect.cast<float>()),
+        center1_(geometry.center1),
+        x_(static_cast<size_t>(surface.grid.window.width) + RectMap::kRowSlack),
+        y_(x_.size()) {}
+
+  void Run(int b, DensePoint* next) {
+    const SampleGrid& grid = surface_.grid;
+    const float* disparity = RowOf(surface_.disparity, grid, b);
+    const float* slope_x = RowOf(surface_.slope_x, grid, b);
+    const float* slope_y = RowOf(surface_.slope_y, grid, b);
+    map1_.SourceRow(grid.PixelY(b), x_.data(), y_.data());
+    const float rect_y = static_cast<float>(grid.RectY(b));
+    for (int a = 0; a < grid.width; ++a) {
+      const float d = disparity[a];
+      if (d <= 0) continue;
+      const float rect_x = static_cast<float>(grid.RectX(a));
+      const Eigen::Vector3f ray =
+          world_from_rect_ * Eigen::Vector3f(rect_x / focal_, rect_y / focal_, 1);
+      DensePoint& point = *next++;
+      point.xyz = (center1_ + (focal_baseline_ / d * ray).cast<double>()).cast<float>();
+      point.normal = Normal(rect_x, rect_y, d, slope_x[a], slope_y[a], ray);
+      const size_t pixel = static_cast<size_t>(grid.PixelX(a));
+      point.rgb = ColorAt(color1_, x_[pixel], y_[pixel]);
     }
   }
-  if (n < kMinNormalSupport) return false;
-  const double uu = suu - su * su / n, uv = suv - su * sv / n, vv = svv - sv * sv / n;
-  const double ud = sud - su * sd / n, vd = svd - sv * sd / n;
-  const double det = uu * vv - uv * uv;
-  if (!(det > 1e-6)) return false;
-  *slope_x = (vv * ud - uv * vd) / det / grid.step;
-  *slope_y = (uu * vd - uv * ud) / det / grid.step;
-  return true;
-}
 
-// Rect points lie at (x, y, f) B / d. Where d = c + p x + q y (x, y in rect pixels), d X = B x etc.
-// give the plane n . X = const with n ~ (p, q, (d - p x - q y) / f): the surface's normal.
-Eigen::Vector3d NormalInRect(const PartialDisparity& partial, const PairGeometry& geometry, int a,
-                             int b) {
-  const SampleGrid& grid = partial.grid;
-  const double x = grid.RectX(a), y = grid.RectY(b);
-  const Eigen::Vector3d ray = Eigen::Vector3d(x, y, geometry.focal).normalized();
-  double p = 0, q = 0;
-  if (!FitDisparityPlane(partial, a, b, &p, &q)) return -ray;
-  const double d = partial.disparity[static_cast<size_t>(b) * static_cast<size_t>(grid.width) +
-                                     static_cast<size_t>(a)];
-  const Eigen::Vector3d normal =
-      Eigen::Vector3d(p, q, (d - p * x - q * y) / geometry.focal).normalized();
-  return normal.dot(ray) > 0 ? Eigen::Vector3d(-normal) : normal;
-}
+ private:
+  // Rect points lie at (x, y, f) B / d. Where d = c + p x + q y (x, y in rect pixels), d X = B x
+  // etc. give the plane n . X = const with n ~ (p, q, (d - p x - q y) / f): the surface's normal.
+  Eigen::Vector3f Normal(float x, float y, float d, float p, float q,
+                         const Eigen::Vector3f& ray) const {
+    if (p == 0 && q == 0) return -ray.normalized();
+    const Eigen::Vector3f normal =
+        world_from_rect_ * Eigen::Vector3f(p, q, (d - p * x - q * y) / focal_).normalized();
+    return normal.dot(ray) > 0 ? Eigen::Vector3f(-normal) : normal;
+  }
 
-std::array<uint8_t, 3> ColorAt(const ColorImage& color, const Eigen::Vector2f& pixel) {
-  const int x = std::clamp(static_cast<int>(pixel.x()), 0, color.width - 1);
-  const int y = std::clamp(static_cast<int>(pixel.y()), 0, color.height - 1);
-  return {color.At(x, y, 0), color.At(x, y, 1), color.At(x, y, 2)};
-}
+  const PartialSurface& surface_;
+  const RectMap& map1_;
+  const ColorImage& color1_;
+  const float focal_, focal_baseline_;
+  const Eigen::Matrix3f world_from_rect_;
+  const Eigen::Vector3d center1_;
+  std::vector<float> x_, y_;
+};
 
 }  // namespace
 
-PartialCloud MakePartialCloud(const PartialDisparity& partial, const PairGeometry& geometry,
+PartialCloud MakePartialCloud(const PartialSurface& surface, const PairGeometry& geometry,
                               const RectMap& map1, const ColorImage& color1, int num_threads) {
-  const SampleGrid& grid = partial.grid;
+  const SampleGrid& grid = surface.grid;
   std::vector<size_t> first_of_row(static_cast<size_t>(grid.height) + 1, 0);
   for (int b = 0; b < grid.height; ++b) {
-    const float* row =
-        partial.disparity.data() + static_cast<size_t>(b) * static_cast<size_t>(grid.width);
+    const float* row = RowOf(surface.disparity, grid, b);
     first_of_row[static_cast<size_t>(b) + 1] =
         first_of_row[static_cast<size_t>(b)] +
         static_cast<size_t>(std::count_if(row, row + grid.width, [](float d) { return d > 0; }));
   }
   PartialCloud cloud;
   cloud.points.resize(first_of_row.back());
-  ParallelFor(num_threads, grid.height, [&](int64_t row) {
-    const int b = static_cast<int>(row);
-    size_t next = first_of_row[static_cast<size_t>(b)];
-    for (int a = 0; a < grid.width; ++a) {
-      const float disparity =
-          partial.disparity[static_cast<size_t>(b) * static_cast<size_t>(grid.width) +
-                            static_cast<size_t>(a)];
-      if (disparity <= 0) continue;
-      DensePoint& point = cloud.points[next++];
-      point.xyz = geometry.PointInWorld(grid.RectX(a), grid.RectY(b), disparity).cast<float>();
-      point.normal =
-          (geometry.world_from_rect * NormalInRect(partial, geometry, a, b)).cast<float>();
-      const auto source = map1.Source(grid.PixelX(a), grid.PixelY(b));
-      point.rgb = source ? ColorAt(color1, *source) : std::array<uint8_t, 3>{0, 0, 0};
+  constexpr int kBand = 16;  // rows a task
+  ParallelFor(num_threads, (grid.height + kBand - 1) / kBand, [&](int64_t band) {
+    RowToPoints row_to_points(surface, geometry, map1, color1);
+    const int begin = static_cast<int>(band) * kBand, end = std::min(grid.height, begin + kBand);
+    for (int b = begin; b < end; ++b) {
+      row_to_points.Run(b, cloud.points.data() + first_of_row[static_cast<size_t>(b)]);
     }
   });
   return cloud;
 }
 
-CloudFootprint MakeFootprint(const PartialDisparity& partial, const PairGeometry& geometry,
-                             const std::vector<int>& cell_of_sample,
-                             const std::vector<float>& filled, const CellGrid& cells) {
-  const SampleGrid& grid = partial.grid;
+CellTally TallyCells(const PartialSurface& surface, const PairGeometry& geometry,
+                     const std::vector<int>& cell_of_node, const CellGrid& cells) {
+  const SampleGrid& grid = surface.grid;
   struct Sum {
-    Eigen::Vector3d point = Eigen::Vector3d::Zero();
-    int count = 0;
+    Eigen::Vector3f point = Eigen::Vector3f::Zero();  // (x, y, 1) / disparity: linear in the place
+    int matched = 0, all = 0;
   };
   std::vector<Sum> sums(cells.Size());
   for (int b = 0; b < grid.height; ++b) {
+    const float* row = RowOf(surface.disparity, grid, b);
+    const float y = static_cast<float>(grid.RectY(b));
     for (int a = 0; a < grid.width; ++a) {
-      const size_t node =
-          static_cast<size_t>(b) * static_cast<size_t>(grid.width) + static_cast<size_t>(a);
-      if (partial.disparity[node] <= 0 || cell_of_sample[node] < 0) continue;
-      Sum& sum = sums[static_cast<size_t>(cell_of_sample[node])];
-      sum.point += geometry.PointInWorld(grid.RectX(a), grid.RectY(b), partial.disparity[node]);
-      ++sum.count;
+      const int cell = cell_of_node[grid.NodeOf(a, b)];
+      if (cell < 0) continue;
+      Sum& sum = sums[static_cast<size_t>(cell)];
+      ++sum.all;
+      if (row[a] <= 0) continue;
+      ++sum.matched;
+      sum.point += Eigen::Vector3f(static_cast<float>(grid.RectX(a)), y, 1) / row[a];
     }
   }
-  CloudFootprint footprint;
+  CellTally tally;
+  tally.filled.assign(cells.Size(), 0);
   for (size_t cell = 0; cell < sums.size(); ++cell) {
-    if (filled[cell] < kMinFilledCell || sums[cell].count == 0) continue;
-    const Eigen::Vector3d center = sums[cell].point / sums[cell].count;
+    const Sum& sum = sums[cell];
+    if (sum.matched == 0) continue;
+    tally.filled[cell] = static_cast<float>(sum.matched) / static_cast<float>(sum.all);
+    if (tally.filled[cell] < kMinFilledCell) continue;
+    const Eigen::Vector3d mean = sum.point.cast<double>() / sum.matched;
+    const Eigen::Vector3d center =
+        geometry.PointInWorld(mean.x() / mean.z(), mean.y() / mean.z(), 1 / mean.z());
     const double range = (center - geometry.center1).norm();
-    footprint.patches.push_back(
+    tally.footprint.patches.push_back(
         {center.cast<float>(), static_cast<float>(cells.cell * range / geometry.focal)});
   }
-  footprint.UpdateSphere();
-  return footprint;
+  tally.footprint.UpdateSphere();
+  return tally;
 }
 
 }  // namespace colmap_seapoint

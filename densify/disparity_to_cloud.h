@@ -1,4 +1,4 @@
-// Reprojection (paper 2.6): partial disparity -> points with normals and colours, in the world.
+// Reprojection (paper 2.6): partial surface -> points with normals and colours, in the world.
 #pragma once
 
 #include <vector>
@@ -6,19 +6,23 @@
 #include "colmap_seapoint/base/image.h"
 #include "densify/coverage.h"
 #include "densify/partial_cloud.h"
-#include "densify/propagation.h"
 #include "densify/rectification.h"
+#include "densify/surface_fit.h"
 
 namespace colmap_seapoint {
 
-// One point a matched sample, in raster order of the samples. Normals from the plane through the
-// neighbouring points (towards the camera where there are too few); colours of picture 1.
-PartialCloud MakePartialCloud(const PartialDisparity& partial, const PairGeometry& geometry,
+// One point a sample of the surface, in raster order of the samples; normals from its slopes
+// (towards the camera where it has none), colours of picture 1.
+PartialCloud MakePartialCloud(const PartialSurface& surface, const PairGeometry& geometry,
                               const RectMap& map1, const ColorImage& color1, int num_threads);
 
-// The mean point of every cell of which at least half is filled.
-CloudFootprint MakeFootprint(const PartialDisparity& partial, const PairGeometry& geometry,
-                             const std::vector<int>& cell_of_sample,
-                             const std::vector<float>& filled, const CellGrid& cells);
+// What the surface fills of picture 1's cells. cell_of_node: the cell that each node (kNodeStep)
+// lies in, -1 outside the picture.
+struct CellTally {
+  std::vector<float> filled;  // share of each cell's samples that hold surface, 0..1
+  CloudFootprint footprint;   // mean point of every cell of which at least half is filled
+};
+CellTally TallyCells(const PartialSurface& surface, const PairGeometry& geometry,
+                     const std::vector<int>& cell_of_node, const CellGrid& cells);
 
 }  // namespace colmap_seapoint

@@ -15,7 +15,8 @@ namespace {
 constexpr int kUnmatched = -1;
 constexpr float kMinImprovement = 0.02f;  // that a colliding region needs to take a sample over
 constexpr int kSeedSearch = 2;            // pixels of disparity around a seed's own
-constexpr int64_t kChunk = 512;           // samples a task
+constexpr int kSearch = kNodeStep / 2;    // and around a neighbour's
+constexpr int64_t kChunk = 128;           // nodes a task
 
 struct Candidate {
   int disparity = kUnmatched;
@@ -35,12 +36,12 @@ class WindowMatcher {
 
   bool Fits1(int i, int j) const { return Fits(picture1_, i, j); }
   ZnccReference Reference(int i, int j) const {
-    return ZnccReference(picture1_.gray, i + RectMap::kPadding, j, size_);
+    return ZnccReference(picture1_.gray, i, j, size_);
   }
   float Score(const ZnccReference& reference, int i, int j, int disparity) const {
     const int i2 = i + column_shift_ - disparity, j2 = j + row_shift_;
     if (disparity <= 0 || !Fits(picture2_, i2, j2)) return -1;
-    return reference.Score(picture2_.gray, i2 + RectMap::kPadding, j2);
+    return reference.Score(picture2_.gray, i2, j2);
   }
 
  private:
@@ -50,8 +51,8 @@ class WindowMatcher {
         j + half_ >= picture.window.height) {
       return false;
     }
-    const uint8_t* top = picture.valid.Row(j - half_) + RectMap::kPadding + i;
-    const uint8_t* bottom = picture.valid.Row(j + half_) + RectMap::kPadding + i;
+    const uint8_t* top = picture.gray.Row(j - half_) + i;
+    const uint8_t* bottom = picture.gray.Row(j + half_) + i;
     return top[-half_] && top[half_] && bottom[-half_] && bottom[half_];
   }
 
@@ -62,17 +63,16 @@ class WindowMatcher {
 
 class Propagation {
  public:
-  Propagation(const RectPicture& picture1, const RectPicture& picture2, const SampleGrid& grid,
-              const std::vector<float>& gate, const PropagationOptions& options, int num_threads)
+  Propagation(const RectPicture& picture1, const RectPicture& picture2, const Gate& gate,
+              const PropagationOptions& options, int num_threads)
       : matcher_(picture1, picture2, options.window_size),
-        grid_(grid),
+        grid_(gate.Nodes()),
         gate_(gate),
         options_(options),
         num_threads_(num_threads),
-        search_(std::max(1, (grid.step + 1) / 2)),
-        state_(grid.Size()),
-        generation_(grid.Size(), -1),
-        visited_(grid.Size(), -1) {}
+        state_(grid_.Size()),
+        generation_(grid_.Size(), -1),
+        visited_(grid_.Size(), -1) {}
 
   PartialDisparity Run(const std::vector<Seed>& seeds) {
     PlantSeeds(seeds);
@@ -129,9 +129,9 @@ class Propagation {
       const int disparity = state_[static_cast<size_t>(node)].disparity;
       ForEachNeighbor(node, [&](int neighbor) {
         const size_t n = static_cast<size_t>(neighbor);
-        if (visited_[n] == generation || gate_[n] == SampleGate::kClosed) return;
+        if (visited_[n] == generation || gate_.At(grid_.PixelX(neighbor % grid_.width), grid_.PixelY(neighbor / grid_.width)) == Gate::kClosed) return;
         const int held = state_[n].disparity;
-        if (held != kUnmatched && std::abs(held - disparity) <= search_) return;
+        if (held != kUnmatched && std::abs(held - disparity) <= kSearch) return;
         visited_[n] = generation;
         targets.push_back(neighbor);
       });
@@ -153,13 +153,13 @@ class Propagation {
   }
 
   Candidate BestFromNeighbors(int target, int generation) const {
-    std::array<int, 4 * 65> disparities;
+    std::array<int, 4 * (2 * kSearch + 1)> disparities;
     int count = 0;
     const int held = state_[static_cast<size_t>(target)].disparity;
     ForEachNeighbor(target, [&](int neighbor) {
       const size_t n = static_cast<size_t>(neighbor);
       if (generation_[n] != generation) return;
-      for (int d = state_[n].disparity - search_; d <= state_[n].disparity + search_; ++d) {
+      for (int d = state_[n].disparity - kSearch; d <= state_[n].disparity + kSearch; ++d) {
         int* const end = disparities.data() + count;
         if (d == held || std::find(disparities.data(), end, d) != end) continue;
         disparities[static_cast<size_t>(count++)] = d;
@@ -171,12 +171,12 @@ class Propagation {
   Candidate Best(int target, const int* disparities, int count) const {
     Candidate best;
     const int i = grid_.PixelX(target % grid_.width), j = grid_.PixelY(target / grid_.width);
-    const float gate = gate_[static_cast<size_t>(target)];
-    if (gate == SampleGate::kClosed || !matcher_.Fits1(i, j)) return best;
+    const float gate = gate_.At(i, j);
+    if (gate == Gate::kClosed || !matcher_.Fits1(i, j)) return best;
     const ZnccReference reference = matcher_.Reference(i, j);
     if (!reference.HasTexture()) return best;
     for (int c = 0; c < count; ++c) {
-      if (!SampleGate::Admits(gate, static_cast<float>(disparities[c]))) continue;
+      if (!Gate::Admits(gate, static_cast<float>(disparities[c]))) continue;
       const float score = matcher_.Score(reference, i, j, disparities[c]);
       if (score > best.score) {
         best.score = score;
@@ -262,10 +262,9 @@ class Propagation {
 
   const WindowMatcher matcher_;
   const SampleGrid grid_;
-  const std::vector<float>& gate_;
+  const Gate& gate_;
   const PropagationOptions options_;
   const int num_threads_;
-  const int search_;  // disparities tried around a neighbour's, pixels
   std::vector<Candidate> state_;
   std::vector<int> generation_;  // in which a sample was last matched
   std::vector<int> visited_;     // generation that last collected it as a target
@@ -278,20 +277,19 @@ class Propagation {
 SampleGrid::SampleGrid(const RectWindow& rect_window, int sample_step)
     : window(rect_window),
       step(sample_step),
-      width(rect_window.width / sample_step),
-      height(rect_window.height / sample_step) {}
+      width((rect_window.width + sample_step - 1) / sample_step),
+      height((rect_window.height + sample_step - 1) / sample_step) {}
 
-bool SampleGate::Admits(float gate, float disparity) {
+bool Gate::Admits(float gate, float disparity) {
   if (gate == kOpen) return true;
   if (gate == kClosed) return false;
   return std::abs(disparity - gate) > 4 + 0.04f * gate;
 }
 
 PartialDisparity Propagate(const RectPicture& picture1, const RectPicture& picture2,
-                           const SampleGrid& grid, const std::vector<float>& gate,
-                           const std::vector<Seed>& seeds, const PropagationOptions& options,
-                           int num_threads) {
-  return Propagation(picture1, picture2, grid, gate, options, num_threads).Run(seeds);
+                           const Gate& gate, const std::vector<Seed>& seeds,
+                           const PropagationOptions& options, int num_threads) {
+  return Propagation(picture1, picture2, gate, options, num_threads).Run(seeds);
 }
 
 }  // namespace colmap_seapoint

@@ -19,7 +19,7 @@ struct Seed {
 };
 
 // Samples every `step` pixels of picture 1's rectified window; sample (a, b) lies at window pixel
-// (a * step + step / 2, b * step + step / 2).
+// (a * step + step / 2, b * step + step / 2), the last of a row maybe just beyond the window.
 struct SampleGrid {
   RectWindow window;
   int step = 1;
@@ -32,19 +32,45 @@ struct SampleGrid {
   int PixelY(int b) const { return b * step + step / 2; }
   double RectX(int a) const { return window.x0 + PixelX(a) + 0.5; }
   double RectY(int b) const { return window.y0 + PixelY(b) + 0.5; }
+  // The node (see kNodeStep) whose square holds a sample.
+  size_t NodeOf(int a, int b) const;
+  // The first sample at or behind a window pixel.
+  int FirstFrom(int pixel) const { return (pixel - step / 2 + step - 1) / step; }
 };
 
-// Which samples may be matched. kClosed: never. kOpen: yes. A positive value: something at that
-// disparity is reconstructed already, so only what differs clearly from it may be matched.
-struct SampleGate {
+// Propagation works on a coarse grid of samples, the nodes; Refine fills in between.
+inline constexpr int kNodeStep = 4;
+
+inline size_t SampleGrid::NodeOf(int a, int b) const {
+  const int nodes_across = (window.width + kNodeStep - 1) / kNodeStep;
+  return static_cast<size_t>(PixelY(b) / kNodeStep) * static_cast<size_t>(nodes_across) +
+         static_cast<size_t>(PixelX(a) / kNodeStep);
+}
+
+// Where picture 1 may be matched, kept at nodes. kClosed: not at all. kOpen: yes. A positive value:
+// something at that disparity is reconstructed already, so only what differs clearly from it may be
+// matched.
+class Gate {
+ public:
   static constexpr float kOpen = -1;
   static constexpr float kClosed = -2;
-  static bool Admits(float gate, float disparity);
-};
 
-struct RectPicture {
-  RectWindow window;
-  GrayImage gray, valid;  // RectMap::Rectify's
+  Gate() = default;
+  Gate(const RectWindow& window, float value)
+      : nodes_(window, kNodeStep), value_(nodes_.Size(), value) {}
+
+  const SampleGrid& Nodes() const { return nodes_; }
+  float& operator[](size_t node) { return value_[node]; }
+  // Of the node whose square holds a window pixel.
+  float At(int x, int y) const {
+    return value_[static_cast<size_t>(y / kNodeStep) * static_cast<size_t>(nodes_.width) +
+                  static_cast<size_t>(x / kNodeStep)];
+  }
+  static bool Admits(float gate, float disparity);
+
+ private:
+  SampleGrid nodes_;
+  std::vector<float> value_;
 };
 
 struct PropagationOptions {
@@ -61,15 +87,11 @@ struct PartialDisparity {
   int num_failed_seeds = 0;  // around which hardly anything matched (paper 2.7)
 };
 
-// The same result for any number of threads: a generation's candidates are scored against the state
-// of the one before, and committed in raster order. Cost: about 4 windows a sample.
+// Disparities of the gate's nodes. The same result for any number of threads: a generation's
+// candidates are scored against the state of the one before, and committed in raster order. Cost:
+// about 12 windows a node.
 PartialDisparity Propagate(const RectPicture& picture1, const RectPicture& picture2,
-                           const SampleGrid& grid, const std::vector<float>& gate,
-                           const std::vector<Seed>& seeds, const PropagationOptions& options,
-                           int num_threads);
-
-// Removes what two views cannot agree on (ours): samples that claim the same place in picture 2 as
-// a better one, samples that disagree with their neighbours, and specks.
-void RemoveInconsistent(const std::vector<float>& gate, PartialDisparity* partial);
+                           const Gate& gate, const std::vector<Seed>& seeds,
+                           const PropagationOptions& options, int num_threads);
 
 }  // namespace colmap_seapoint

@@ -6,10 +6,13 @@
 #include <limits>
 
 #include "colmap_seapoint/base/parallel.h"
+#include "densify/rectify_kernels.h"
 
 namespace colmap_seapoint {
 
 namespace {
+
+using rectify::kCell;
 
 constexpr double kMinAngleToBaselineDeg = 40;  // between a viewing direction and the baseline
 constexpr double kMaxSlope = 3.0;              // |x / z| of a rect ray that is still used
@@ -37,6 +40,11 @@ std::optional<Eigen::Vector2d> PairGeometry::RectFromPixel2(const Eigen::Vector2
 Eigen::Vector3d PairGeometry::PointInWorld(double x, double y, double disparity) const {
   const double depth = focal * baseline / disparity;
   return world_from_rect * (depth * Eigen::Vector3d(x / focal, y / focal, 1)) + center1;
+}
+
+double PairGeometry::DisparityAtRange(double x, double y, double range) const {
+  // range = depth * |ray|
+  return focal * baseline * Eigen::Vector3d(x / focal, y / focal, 1).norm() / range;
 }
 
 std::optional<PairGeometry> MakePairGeometry(const Camera& camera1, const Rigid3d& cam1_from_world,
@@ -143,33 +151,27 @@ std::optional<Eigen::Vector2f> RectMap::Source(int i, int j) const {
   return source;
 }
 
-void RectMap::Rectify(const GrayImage& source, int num_threads, GrayImage* gray,
-                      GrayImage* valid) const {
-  *gray = GrayImage(window_.width + 2 * kPadding, window_.height);
-  *valid = GrayImage(window_.width + 2 * kPadding, window_.height);
-  ParallelFor(num_threads, (window_.height + kCell - 1) / kCell, [&](int64_t band) {
-    const int begin = static_cast<int>(band) * kCell;
-    const int end = std::min(window_.height, begin + kCell);
+void RectMap::SourceRow(int j, float* x, float* y) const {
+  const Eigen::Vector2f* above =
+      nodes_.data() + static_cast<size_t>(j / kCell) * static_cast<size_t>(nodes_x_);
+  rectify::InterpolateRow(above->data(), (above + nodes_x_)->data(),
+                          static_cast<float>(j % kCell) / kCell, window_.width, x, y);
+}
+
+RectPicture RectMap::Rectify(const GrayImage& source, int num_threads) const {
+  RectPicture picture{window_, GrayImage(window_.width, window_.height)};
+  picture.gray.data.resize(picture.gray.data.size() + RectPicture::kSlack);
+  constexpr int kBand = 16;  // rows a task
+  ParallelFor(num_threads, (window_.height + kBand - 1) / kBand, [&](int64_t band) {
+    const int begin = static_cast<int>(band) * kBand;
+    const int end = std::min(window_.height, begin + kBand);
+    std::vector<float> x(static_cast<size_t>(window_.width) + kRowSlack), y(x.size());
     for (int j = begin; j < end; ++j) {
-      uint8_t* gray_row = gray->Row(j) + kPadding;
-      uint8_t* valid_row = valid->Row(j) + kPadding;
-      for (int i = 0; i < window_.width; ++i) {
-        const auto position = Source(i, j);
-        if (!position) continue;
-        const float x = position->x() - 0.5f, y = position->y() - 0.5f;
-        const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
-        const int u = static_cast<int>(256 * (x - static_cast<float>(x0)));
-        const int v = static_cast<int>(256 * (y - static_cast<float>(y0)));
-        const uint8_t* top = source.Row(y0) + x0;
-        const uint8_t* bottom = source.Row(std::min(y0 + 1, source.height - 1)) + x0;
-        const int right = x0 + 1 < source.width ? 1 : 0;
-        const int value = (256 - v) * ((256 - u) * top[0] + u * top[right]) +
-                          v * ((256 - u) * bottom[0] + u * bottom[right]);
-        gray_row[i] = static_cast<uint8_t>((value + (1 << 15)) >> 16);
-        valid_row[i] = 1;
-      }
+      SourceRow(j, x.data(), y.data());
+      rectify::SampleRow(source, x.data(), y.data(), window_.width, picture.gray.Row(j));
     }
   });
+  return picture;
 }
 
 }  // namespace colmap_seapoint

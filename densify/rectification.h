@@ -26,6 +26,8 @@ struct PairGeometry {
   // Pixel of picture 1 / 2 -> (x, y) in rect pixels (no offset: the axis is at (0, 0)).
   std::optional<Eigen::Vector2d> RectFromPixel1(const Eigen::Vector2d& pixel) const;
   std::optional<Eigen::Vector2d> RectFromPixel2(const Eigen::Vector2d& pixel) const;
+  // Disparity of a point at (x, y) at a distance from the centre of camera 1, model units.
+  double DisparityAtRange(double x, double y, double range) const;
   // The point of the world at rect position (x, y) and disparity d > 0.
   Eigen::Vector3d PointInWorld(double x, double y, double disparity) const;
 };
@@ -43,21 +45,30 @@ struct RectWindow {
 // The smallest window that holds the picture's part of the rect plane, up to 72 degrees aside.
 RectWindow WindowOfPicture(const PairGeometry& geometry, bool second);
 
+struct RectPicture {
+  RectWindow window;
+  GrayImage gray;  // as large as the window; 0 outside the picture, 1..255 in it
+
+  // Bytes behind the last pixel that may be read (vectors reach beyond a window).
+  static constexpr size_t kSlack = 16;
+};
+
 // Where the pixels of a window come from: positions in the source picture, sampled every kCell
 // pixels and bilinear in between.
 class RectMap {
  public:
+  static constexpr size_t kRowSlack = 16;
+
   RectMap(const PairGeometry& geometry, bool second, const RectWindow& window, int num_threads);
   // Source position (pixels) of the window's pixel (i, j); nullopt outside the picture.
   std::optional<Eigen::Vector2f> Source(int i, int j) const;
-  // Fills `gray` and `valid` (0 / 1), both window.width + 2 kPadding wide and window.height high;
-  // column c is window column c - kPadding. Bilinear. Rows are spread over threads.
-  void Rectify(const GrayImage& source, int num_threads, GrayImage* gray, GrayImage* valid) const;
-
-  static constexpr int kPadding = 16;
+  // The same for the whole row j, NaN or beyond the picture where there is none; x and y hold
+  // window.width + kRowSlack values.
+  void SourceRow(int j, float* x, float* y) const;
+  // Bilinear. Rows are spread over threads.
+  RectPicture Rectify(const GrayImage& source, int num_threads) const;
 
  private:
-  static constexpr int kCell = 8;
   RectWindow window_;
   int source_width_, source_height_;
   int nodes_x_, nodes_y_;

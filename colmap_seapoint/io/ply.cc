@@ -18,6 +18,7 @@ static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the files are little-e
 
 constexpr size_t kPointBytes = 6 * sizeof(float) + 3;
 constexpr size_t kReadBytes = 1 << 20;
+constexpr size_t kWriteBytes = 1 << 18;
 constexpr const char* kRemedy = "restore a copy, or save the cloud again";
 
 // The number of vertices is known at the end only. A comment of dots takes up what a shorter number
@@ -207,17 +208,29 @@ void CloudWriter::Add(const CloudPoint& point, const uint32_t* image_idxs,
     ++num_skipped_;
     return;
   }
-  char record[kPointBytes];
+  const size_t at = ply_buffer_.size(), vis_at = vis_buffer_.size();
+  ply_buffer_.resize(at + kPointBytes);
+  char* record = ply_buffer_.data() + at;
   std::memcpy(record, point.xyz.data(), 3 * sizeof(float));
   std::memcpy(record + 3 * sizeof(float), point.normal.data(), 3 * sizeof(float));
   std::memcpy(record + 6 * sizeof(float), point.rgb.data(), 3);
-  ply_.Write(record, sizeof(record));
-  vis_.Write(&num_image_idxs, sizeof(num_image_idxs));
-  vis_.Write(image_idxs, num_image_idxs * sizeof(uint32_t));
+  vis_buffer_.resize(vis_at + (1 + num_image_idxs) * sizeof(uint32_t));
+  std::memcpy(vis_buffer_.data() + vis_at, &num_image_idxs, sizeof(uint32_t));
+  std::memcpy(vis_buffer_.data() + vis_at + sizeof(uint32_t), image_idxs,
+              num_image_idxs * sizeof(uint32_t));
   ++num_points_;
+  if (ply_buffer_.size() >= kWriteBytes) Flush();
+}
+
+void CloudWriter::Flush() {
+  ply_.Write(ply_buffer_.data(), ply_buffer_.size());
+  vis_.Write(vis_buffer_.data(), vis_buffer_.size());
+  ply_buffer_.clear();
+  vis_buffer_.clear();
 }
 
 void CloudWriter::Finish() {
+  Flush();
   const std::string header = CloudHeader(num_points_);
   ply_.WriteAt(0, header.data(), header.size());
   vis_.WriteAt(0, &num_points_, sizeof(num_points_));

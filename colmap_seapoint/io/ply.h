@@ -34,8 +34,11 @@ class CloudWriter {
   uint64_t NumSkipped() const { return num_skipped_; }
 
  private:
+  void Flush();
+
   AtomicFile ply_;
   AtomicFile vis_;
+  std::vector<char> ply_buffer_, vis_buffer_;
   uint64_t num_points_ = 0;
   uint64_t num_skipped_ = 0;
 };

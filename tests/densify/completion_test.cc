@@ -157,10 +157,10 @@ TEST(SelectCompletionPartnerTest, NothingUncoveredNoPartner) {
   const std::vector<double> range = TrueRanges(view);
   ViewCoverage full{kGrid, std::vector<float>(kGrid.Size(), 2.f)};
   EXPECT_EQ(SelectCompletionPartner(view, full, range, {{1, ViewAbove(0.2)}}), -1);
-  // A few open cells are not worth a pair: 1.5 % of 1200 are 18.
-  for (size_t cell = 600; cell < 617; ++cell) full.range[cell] = 0;
+  // A few open cells are not worth a pair: 0.3 % of 1200 are 3.6.
+  for (size_t cell = 600; cell < 603; ++cell) full.range[cell] = 0;
   EXPECT_EQ(SelectCompletionPartner(view, full, range, {{1, ViewAbove(0.2)}}), -1);
-  for (size_t cell = 600; cell < 630; ++cell) full.range[cell] = 0;
+  for (size_t cell = 600; cell < 610; ++cell) full.range[cell] = 0;
   EXPECT_EQ(SelectCompletionPartner(view, full, range, {{1, ViewAbove(0.2)}}), 1);
 }
 

@@ -9,16 +9,16 @@
 namespace colmap_seapoint {
 namespace {
 
-constexpr int kWidth = 160, kHeight = 60, kDisparity = 10;
+constexpr int kNodesX = 160, kNodesY = 60, kDisparity = 10;
+constexpr int kWidth = kNodesX * kNodeStep, kHeight = kNodesY * kNodeStep;
 
 // Two rectified pictures of a wall at one disparity. Stripes of period 12 beneath fine noise: at
 // 12 pixels too much it still correlates, but less.
 struct Wall {
   RectPicture picture1, picture2;
-  SampleGrid grid{RectWindow{0, 0, kWidth, kHeight}, 1};
-  std::vector<float> gate;
+  Gate gate{RectWindow{0, 0, kWidth, kHeight}, Gate::kOpen};
 
-  Wall() : gate(grid.Size(), SampleGate::kOpen) {
+  Wall() {
     std::mt19937 generator(3);
     GrayImage texture(kWidth + 100, kHeight);
     for (int y = 0; y < kHeight; ++y) {
@@ -29,23 +29,27 @@ struct Wall {
       }
     }
     for (RectPicture* picture : {&picture1, &picture2}) {
-      picture->window = grid.window;
-      picture->gray = GrayImage(kWidth + 2 * RectMap::kPadding, kHeight);
-      picture->valid = picture->gray;
+      picture->window = gate.Nodes().window;
+      picture->gray = GrayImage(kWidth, kHeight);
+      picture->gray.data.resize(picture->gray.data.size() + RectPicture::kSlack);
       const int shift = picture == &picture2 ? kDisparity : 0;
       for (int y = 0; y < kHeight; ++y) {
         for (int x = 0; x < kWidth; ++x) {
-          picture->gray.At(x + RectMap::kPadding, y) = texture.At(x + 20 + shift, y);
-          picture->valid.At(x + RectMap::kPadding, y) = 1;
+          picture->gray.At(x, y) = texture.At(x + 20 + shift, y);
         }
       }
     }
   }
 
   PartialDisparity Grow(const std::vector<Seed>& seeds, int max_generations = 1000) const {
-    return Propagate(picture1, picture2, grid, gate, seeds, {9, 0.5f, max_generations}, 2);
+    return Propagate(picture1, picture2, gate, seeds, {9, 0.5f, max_generations}, 2);
   }
 };
+
+// The seed at the middle of a node.
+Seed SeedAt(int a, int b, double disparity) {
+  return {(a + 0.5) * kNodeStep, (b + 0.5) * kNodeStep, disparity};
+}
 
 int CountNear(const PartialDisparity& partial, double disparity) {
   int count = 0;
@@ -54,9 +58,10 @@ int CountNear(const PartialDisparity& partial, double disparity) {
 }
 
 TEST(PropagationTest, OneSeedFillsTheWall) {
-  const PartialDisparity partial = Wall().Grow({{80.5, 30.5, kDisparity}});
+  const PartialDisparity partial = Wall().Grow({SeedAt(80, 30, kDisparity)});
   // All but the windows' margin, and what lies left of picture 2.
-  const int expected = (kWidth - 8 - kDisparity - 1) * (kHeight - 8);
+  const int first = (4 + kDisparity + 1 + 1) / kNodeStep;
+  const int expected = (kNodesX - 1 - first) * (kNodesY - 2);
   EXPECT_NEAR(CountNear(partial, kDisparity), expected, 0.02 * expected);
   EXPECT_EQ(partial.num_failed_seeds, 0);
 }
@@ -64,21 +69,21 @@ TEST(PropagationTest, OneSeedFillsTheWall) {
 // Paper 2.6, Figure 12: where regions collide, the better match takes over, whoever came first.
 TEST(PropagationTest, TheBetterRegionTakesOver) {
   const Wall wall;
-  const Seed wrong1 = {50.5, 20.5, kDisparity + 12}, wrong2 = {60.5, 40.5, kDisparity + 12};
+  const Seed wrong1 = SeedAt(50, 20, kDisparity + 12), wrong2 = SeedAt(60, 40, kDisparity + 12);
   const PartialDisparity misled = wall.Grow({wrong1, wrong2});
   ASSERT_GT(CountNear(misled, kDisparity + 12), 2000);
-  const PartialDisparity partial = wall.Grow({wrong1, wrong2, {140.5, 30.5, kDisparity}});
+  const PartialDisparity partial = wall.Grow({wrong1, wrong2, SeedAt(140, 30, kDisparity)});
   EXPECT_GT(CountNear(partial, kDisparity), 6500);
   EXPECT_LT(CountNear(partial, kDisparity + 12), 50);
 }
 
 TEST(PropagationTest, GrowthEndsAtTheLimit) {
   for (const int limit : {1, 5, 12}) {
-    const PartialDisparity partial = Wall().Grow({{80.5, 30.5, kDisparity}}, limit);
+    const PartialDisparity partial = Wall().Grow({SeedAt(80, 30, kDisparity)}, limit);
     EXPECT_EQ(CountNear(partial, kDisparity), 2 * limit * (limit + 1) + 1);
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        const size_t node = static_cast<size_t>(y * kWidth + x);
+    for (int y = 0; y < kNodesY; ++y) {
+      for (int x = 0; x < kNodesX; ++x) {
+        const size_t node = static_cast<size_t>(y * kNodesX + x);
         const bool inside = std::abs(x - 80) + std::abs(y - 30) <= limit;
         ASSERT_EQ(partial.disparity[node] > 0, inside) << x << " " << y;
       }
@@ -88,18 +93,18 @@ TEST(PropagationTest, GrowthEndsAtTheLimit) {
 
 TEST(PropagationTest, GatesHold) {
   Wall wall;
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      float& gate = wall.gate[static_cast<size_t>(y * kWidth + x)];
-      if (x >= 100 && x < 110) gate = SampleGate::kClosed;
+  for (int y = 0; y < kNodesY; ++y) {
+    for (int x = 0; x < kNodesX; ++x) {
+      float& gate = wall.gate[static_cast<size_t>(y * kNodesX + x)];
+      if (x >= 100 && x < 110) gate = Gate::kClosed;
       if (y < 20) gate = kDisparity + 2;   // reconstructed already, about there
       if (y >= 45) gate = kDisparity + 9;  // something else is: this is new
     }
   }
-  const PartialDisparity partial = wall.Grow({{60.5, 30.5, kDisparity}});
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      const float disparity = partial.disparity[static_cast<size_t>(y * kWidth + x)];
+  const PartialDisparity partial = wall.Grow({SeedAt(60, 30, kDisparity)});
+  for (int y = 0; y < kNodesY; ++y) {
+    for (int x = 0; x < kNodesX; ++x) {
+      const float disparity = partial.disparity[static_cast<size_t>(y * kNodesX + x)];
       const bool beyond = y < 45 && x >= 100;  // the closed stripe runs through the open band
       if (y < 20 || (beyond && x < 110)) {
         ASSERT_EQ(disparity, 0) << x << " " << y;
@@ -109,16 +114,16 @@ TEST(PropagationTest, GatesHold) {
       }
     }
   }
-  EXPECT_TRUE(SampleGate::Admits(SampleGate::kOpen, 1));
-  EXPECT_FALSE(SampleGate::Admits(SampleGate::kClosed, 1));
-  EXPECT_FALSE(SampleGate::Admits(100, 107.9f));
-  EXPECT_TRUE(SampleGate::Admits(100, 108.1f));
-  EXPECT_TRUE(SampleGate::Admits(100, 91.9f));
+  EXPECT_TRUE(Gate::Admits(Gate::kOpen, 1));
+  EXPECT_FALSE(Gate::Admits(Gate::kClosed, 1));
+  EXPECT_FALSE(Gate::Admits(100, 107.9f));
+  EXPECT_TRUE(Gate::Admits(100, 108.1f));
+  EXPECT_TRUE(Gate::Admits(100, 91.9f));
 }
 
 TEST(PropagationTest, SeedsThatDoNotSpreadAreCounted) {
   const PartialDisparity partial =
-      Wall().Grow({{80.5, 30.5, kDisparity + 6}, {60.5, 30.5, kDisparity + 6}, {-50, 30, 10}}, 10);
+      Wall().Grow({SeedAt(80, 30, kDisparity + 6), SeedAt(60, 30, kDisparity + 6), SeedAt(-50, 30, 10)}, 10);
   EXPECT_EQ(partial.num_failed_seeds, 2);  // the third lies outside
 }
 
