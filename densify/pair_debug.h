@@ -35,7 +35,12 @@ struct PairDebug {
   std::vector<float> covered_range;
 
   const PairResult* partial = nullptr;
+  std::vector<Eigen::Vector2d> failed_seeds;
   PairResult normal;  // what the pair gives when nothing counts as done before
 };
+
+// The seeds in areas that are new whose own cell holds less than a tenth of its disparities; pixels
+// of picture 1.
+std::vector<Eigen::Vector2d> FailedSeeds(const PairInput& input, const PairResult& result);
 
 }  // namespace colmap_seapoint

@@ -32,7 +32,7 @@ void PartialDensificationOptions::Bind(OptionTable* table) {
   table->Add(group + "completion", &completion,
              "after the sequence, densify what two pictures see and no pair has covered", "ours");
   table->Add(group + "write_debug", &write_debug,
-             "draw every pair's figures (paper, Figures 10, 11, 15) into "
+             "draw every pair's figures (paper, Figures 10, 11, 13, 15, 17) into "
              "OUTPUT_PATH/debug",
              "ours");
 }

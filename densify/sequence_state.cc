@@ -249,6 +249,7 @@ void SequenceState::ShowPair(int first, int second, const Overlap& overlap,
   debug.cells = input.cells;
   debug.covered_range = overlap.covered_range;
   debug.partial = &result;
+  debug.failed_seeds = FailedSeeds(input, result);
   std::shared_ptr<const Picture> previous;
   std::shared_ptr<const Features> previous_points;
   if (overlap.mask.grid.Size() > 0) {

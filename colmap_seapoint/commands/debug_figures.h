@@ -1,4 +1,4 @@
-// --PartialDensification.write_debug: the paper's figures 10, 11 and 15 (right) of every pair.
+// --PartialDensification.write_debug: the paper's figures 10, 11, 13, 15 and 17 of every pair.
 #pragma once
 
 #include <filesystem>
@@ -26,11 +26,14 @@ class DebugFigures {
   void WriteFigure(const std::string& name, const Canvas& canvas) const;
   void WriteInfluenceAreas(const PairDebug& pair) const;  // Figure 10
   void WriteMasks(const PairDebug& pair) const;           // Figure 11
+  void WriteDisparities(const PairDebug& pair);           // Figure 13
   void WriteOcclusions(const PairDebug& pair) const;      // Figure 15
+  void WriteRevived(const PairDebug& pair) const;         // Figure 17
 
   const std::filesystem::path folder_;
   const SparseModel& model_;
   int num_pairs_ = 0;
+  Canvas previous_disparity_;  // of the pair before, for Figure 13
 };
 
 }  // namespace colmap_seapoint
