@@ -196,7 +196,8 @@ void DebugFigures::WriteRevived(const PairDebug& pair) const {
   // The mask is made of cells: a rim of their size is not drawn as hidden by the overlap.
   const double radius = std::max(0.0, pair.influence_radius1 - pair.cells.cell);
   const cv::Mat overlap = left.Hull(ends.All1()) | left.Discs(ends.All1(), radius);
-  const cv::Mat around_revived = left.Discs(ends.revived1, pair.influence_radius1);
+  const cv::Mat around_revived =
+      left.Discs(ends.revived1, pair.influence_radius1 + pair.cells.cell);
   std::vector<PlacedDisparity> outside, revived, uncovered;
   for (const PlacedDisparity& sample : partial) {
     if (!left.Holds(overlap, sample.pixel)) {
