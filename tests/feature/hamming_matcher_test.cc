@@ -8,7 +8,7 @@
 #include <random>
 #include <set>
 
-#include "tests/feature/vector_targets.h"
+#include "tests/vector_targets.h"
 
 namespace colmap_seapoint {
 namespace {

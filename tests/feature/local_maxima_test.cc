@@ -9,8 +9,8 @@
 
 #include "feature/seapoint_detector.h"
 #include "tests/feature/detector_oracle.h"
-#include "tests/feature/vector_targets.h"
 #include "tests/synthetic/world.h"
+#include "tests/vector_targets.h"
 
 namespace colmap_seapoint {
 namespace {

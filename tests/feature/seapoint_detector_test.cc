@@ -6,7 +6,7 @@
 #include <random>
 
 #include "tests/feature/detector_oracle.h"
-#include "tests/feature/vector_targets.h"
+#include "tests/vector_targets.h"
 
 namespace colmap_seapoint {
 namespace {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/feature/vector_targets.h"
+#include "tests/vector_targets.h"
 
 namespace colmap_seapoint {
 namespace {
