@@ -34,26 +34,32 @@ class WindowMatcher {
         column_shift_(picture1.window.x0 - picture2.window.x0),
         row_shift_(picture1.window.y0 - picture2.window.y0) {}
 
-  bool Fits1(int i, int j) const { return Fits(picture1_, i, j); }
-  ZnccReference Reference(int i, int j) const {
-    return ZnccReference(picture1_.gray, i, j, size_);
+  // The whole window of picture 1 lies in the picture: its four corners do.
+  bool Fits1(int i, int j) const {
+    if (!InRaster(picture1_, i, j)) return false;
+    const uint8_t* top = picture1_.gray.Row(j - half_) + i;
+    const uint8_t* bottom = picture1_.gray.Row(j + half_) + i;
+    return top[-half_] && top[half_] && bottom[-half_] && bottom[half_];
   }
-  float Score(const ZnccReference& reference, int i, int j, int disparity) const {
-    const int i2 = i + column_shift_ - disparity, j2 = j + row_shift_;
-    if (disparity <= 0 || !Fits(picture2_, i2, j2)) return -1;
-    return reference.Score(picture2_.gray, i2, j2);
+
+  // scores[k]: at disparity first + k, k < count <= zncc::kMaxRun; -1 where the window does not fit
+  // in picture 2. The one of picture 1 must fit.
+  void ScoreRun(int i, int j, int first, int count, float* scores) const {
+    std::fill_n(scores, count, -1.0f);
+    const int origin = i + column_shift_, j2 = j + row_shift_;  // column in picture 2 at disparity 0
+    const int low = std::max({first, 1, origin + half_ + 1 - picture2_.window.width});
+    const int high = std::min(first + count - 1, origin - half_);
+    if (low > high || !InRaster(picture2_, origin - low, j2)) return;
+    std::array<float, zncc::kMaxRun> by_column;
+    zncc::ScoreRun(picture1_.gray, i, j, picture2_.gray, origin - high, j2, size_, high - low + 1,
+                   by_column.data());
+    for (int d = low; d <= high; ++d) scores[d - first] = by_column[static_cast<size_t>(high - d)];
   }
 
  private:
-  // The whole window lies in the picture: its four corners do.
-  bool Fits(const RectPicture& picture, int i, int j) const {
-    if (i < half_ || j < half_ || i + half_ >= picture.window.width ||
-        j + half_ >= picture.window.height) {
-      return false;
-    }
-    const uint8_t* top = picture.gray.Row(j - half_) + i;
-    const uint8_t* bottom = picture.gray.Row(j + half_) + i;
-    return top[-half_] && top[half_] && bottom[-half_] && bottom[half_];
+  bool InRaster(const RectPicture& picture, int i, int j) const {
+    return i >= half_ && j >= half_ && i + half_ < picture.window.width &&
+           j + half_ < picture.window.height;
   }
 
   const RectPicture& picture1_;
@@ -168,20 +174,25 @@ class Propagation {
     return Best(target, disparities.data(), count);
   }
 
-  Candidate Best(int target, const int* disparities, int count) const {
+  // Sorts the disparities.
+  Candidate Best(int target, int* disparities, int count) const {
     Candidate best;
     const int i = grid_.PixelX(target % grid_.width), j = grid_.PixelY(target / grid_.width);
     const float gate = gate_.At(i, j);
     if (gate == Gate::kClosed || !matcher_.Fits1(i, j)) return best;
-    const ZnccReference reference = matcher_.Reference(i, j);
-    if (!reference.HasTexture()) return best;
+    std::sort(disparities, disparities + count);
+    int first = 0, run = 0;  // disparities scored at once
+    std::array<float, zncc::kMaxRun> scores;
     for (int c = 0; c < count; ++c) {
-      if (!Gate::Admits(gate, static_cast<float>(disparities[c]))) continue;
-      const float score = matcher_.Score(reference, i, j, disparities[c]);
-      if (score > best.score) {
-        best.score = score;
-        best.disparity = disparities[c];
+      const int disparity = disparities[c];
+      if (c == 0 || disparity >= first + run) {
+        first = disparity;
+        run = std::min(zncc::kMaxRun, disparities[count - 1] - first + 1);
+        matcher_.ScoreRun(i, j, first, run, scores.data());
       }
+      if (!Gate::Admits(gate, static_cast<float>(disparity))) continue;
+      const float score = scores[static_cast<size_t>(disparity - first)];
+      if (score > best.score) best = {disparity, score};
     }
     if (best.score < options_.min_zncc) best.disparity = kUnmatched;
     return best;
@@ -241,22 +252,22 @@ class Propagation {
   void RefineSubPixel(size_t node, PartialDisparity* partial) const {
     const int i = grid_.PixelX(static_cast<int>(node) % grid_.width);
     const int j = grid_.PixelY(static_cast<int>(node) / grid_.width);
-    const ZnccReference reference = matcher_.Reference(i, j);
-    int disparity = state_[node].disparity;
-    float here = state_[node].score;
-    for (int climb = 0; climb <= 2; ++climb) {
-      const float less = matcher_.Score(reference, i, j, disparity - 1);
-      const float more = matcher_.Score(reference, i, j, disparity + 1);
+    constexpr int kMaxClimb = 2;
+    std::array<float, 2 * kMaxClimb + 3> scores;
+    const int first = state_[node].disparity - kMaxClimb - 1;
+    matcher_.ScoreRun(i, j, first, static_cast<int>(scores.size()), scores.data());
+    size_t at = kMaxClimb + 1;
+    for (int climb = 0; climb <= kMaxClimb; ++climb) {
+      const float less = scores[at - 1], here = scores[at], more = scores[at + 1];
       if (less <= here && more <= here) {
         if (less <= -1 || more <= -1) return;
         const float curvature = less - 2 * here + more;
         const float offset = curvature < 0 ? 0.5f * (less - more) / curvature : 0.0f;
-        partial->disparity[node] = static_cast<float>(disparity) + offset;
+        partial->disparity[node] = static_cast<float>(first + static_cast<int>(at)) + offset;
         partial->score[node] = here;
         return;
       }
-      here = std::max(less, more);
-      disparity += less > more ? -1 : 1;
+      at = less > more ? at - 1 : at + 1;
     }
   }
 
