@@ -14,6 +14,8 @@ namespace {
 
 constexpr size_t kMaxCovisible = 12;
 constexpr double kMinGain = 0.003;  // share of a picture's cells that makes a pair worth it
+constexpr double kGainTriedOnce = 0.25;
+constexpr float kMinFilledCell = 0.75f;  // share of its samples that makes a cell covered
 constexpr double kMinParallaxDeg = 2;
 constexpr double kMaxParallaxDeg = 40;
 constexpr double kRimMargin = 0.01;  // of the partner's sides: no window fits nearer
@@ -133,20 +135,38 @@ std::vector<double> PredictRanges(const SparseModel& model, const PosedImage& im
   return range;
 }
 
-int SelectCompletionPartner(const View& view, const ViewCoverage& coverage,
-                            const std::vector<double>& predicted_range,
-                            const std::vector<CompletionCandidate>& candidates) {
-  const CellGrid& grid = coverage.grid;
-  const Rigid3d world_from_cam = view.cam_from_world.Inverse();
-  std::vector<Eigen::Vector3d> uncovered;  // world
-  for (size_t cell = 0; cell < grid.Size(); ++cell) {
-    if (coverage.range[cell] > 0 || predicted_range[cell] <= 0) continue;
-    const auto point = PointAt(view, world_from_cam, grid, cell, predicted_range[cell]);
-    if (point) uncovered.push_back(*point);
+CompletionView LookAt(const View& view, const CellGrid& cells,
+                      const std::vector<CloudFootprint>& footprints, const GivenUp& given_up) {
+  CompletionView seen;
+  seen.coverage = ProjectCoverage(footprints, view.camera, view.cam_from_world, cells);
+  seen.tries.assign(cells.Size(), 0);
+  const auto once = ProjectCoverage(given_up.once, view.camera, view.cam_from_world, cells);
+  const auto twice = ProjectCoverage(given_up.twice, view.camera, view.cam_from_world, cells);
+  for (size_t cell = 0; cell < cells.Size(); ++cell) {
+    seen.tries[cell] = twice.range[cell] > 0 ? 2 : once.range[cell] > 0 ? 1 : 0;
   }
-  int best = -1;
+  return seen;
+}
+
+CompletionTarget SelectCompletionPartner(const View& view, const CompletionView& seen,
+                                         const std::vector<CompletionCandidate>& candidates) {
+  const CellGrid& grid = seen.coverage.grid;
+  const Rigid3d world_from_cam = view.cam_from_world.Inverse();
+  std::vector<size_t> cells;            // uncovered ones
+  std::vector<Eigen::Vector3d> points;  // their predicted places, world
+  for (size_t cell = 0; cell < grid.Size(); ++cell) {
+    if (seen.coverage.range[cell] > 0 || seen.predicted_range[cell] <= 0 || seen.tries[cell] >= 2) {
+      continue;
+    }
+    const auto point = PointAt(view, world_from_cam, grid, cell, seen.predicted_range[cell]);
+    if (!point) continue;
+    cells.push_back(cell);
+    points.push_back(*point);
+  }
+  CompletionTarget best;
   double best_gain = kMinGain * static_cast<double>(grid.Size());
   const Eigen::Vector3d center1 = view.cam_from_world.OriginInSource();
+  std::vector<uint8_t> closed;
   for (const CompletionCandidate& candidate : candidates) {
     if (!MakePairGeometry(view.camera, view.cam_from_world, candidate.view.camera,
                           candidate.view.cam_from_world)) {
@@ -154,38 +174,65 @@ int SelectCompletionPartner(const View& view, const ViewCoverage& coverage,
     }
     const Eigen::Vector3d center2 = candidate.view.cam_from_world.OriginInSource();
     double gain = 0;
-    for (const Eigen::Vector3d& point : uncovered) {
-      const double parallax = ParallaxDeg(point, center1, center2);
-      if (parallax >= kMinParallaxDeg && parallax <= kMaxParallaxDeg &&
-          SeesWell(candidate.view, point)) {
-        gain += 1;
+    closed.assign(grid.Size(), 1);
+    for (size_t i = 0; i < cells.size(); ++i) {
+      const double parallax = ParallaxDeg(points[i], center1, center2);
+      if (parallax < kMinParallaxDeg || parallax > kMaxParallaxDeg ||
+          !SeesWell(candidate.view, points[i])) {
+        continue;
       }
+      gain += seen.tries[cells[i]] == 0 ? 1 : kGainTriedOnce;
+      closed[cells[i]] = 0;
     }
-    if (gain > best_gain) {
-      best_gain = gain;
-      best = candidate.position;
-    }
+    if (gain <= best_gain) continue;
+    best_gain = gain;
+    best.partner = candidate.position;
+    best.closed = closed;
   }
   return best;
 }
 
 std::vector<PixelPair> SeedsAlongRim(const View& view, const View& partner,
-                                     const ViewCoverage& coverage,
-                                     const std::vector<double>& predicted_range) {
-  const CellGrid& grid = coverage.grid;
+                                     const CompletionView& seen) {
+  const CellGrid& grid = seen.coverage.grid;
   const Rigid3d world_from_cam = view.cam_from_world.Inverse();
   std::vector<PixelPair> seeds;
   for (size_t cell = 0; cell < grid.Size(); ++cell) {
-    if (coverage.range[cell] > 0 || predicted_range[cell] <= 0) continue;
+    if (seen.coverage.range[cell] > 0 || seen.predicted_range[cell] <= 0) continue;
     bool on_rim = false;
-    ForEachNeighbor(grid, cell, [&](size_t to) { on_rim = on_rim || coverage.range[to] > 0; });
+    ForEachNeighbor(grid, cell, [&](size_t to) {
+      on_rim = on_rim || seen.coverage.range[to] > 0;
+    });
     if (!on_rim) continue;
-    const auto point = PointAt(view, world_from_cam, grid, cell, predicted_range[cell]);
+    const auto point = PointAt(view, world_from_cam, grid, cell, seen.predicted_range[cell]);
     if (!point || !SeesWell(partner, *point)) continue;
     seeds.push_back(
         {grid.Center(cell), *partner.camera.ImgFromCam(partner.cam_from_world * *point)});
   }
   return seeds;
+}
+
+void NoteFailures(const View& view, const CompletionTarget& target,
+                  const std::vector<float>& filled, CompletionView* seen, GivenUp* given_up) {
+  const CellGrid& grid = seen->coverage.grid;
+  const Rigid3d world_from_cam = view.cam_from_world.Inverse();
+  CloudFootprint once, twice;
+  for (size_t cell = 0; cell < grid.Size(); ++cell) {
+    if (target.closed[cell] || (!filled.empty() && filled[cell] >= kMinFilledCell)) continue;
+    const double range = seen->predicted_range[cell];
+    const auto point = PointAt(view, world_from_cam, grid, cell, range);
+    if (!point) continue;
+    const double size = grid.cell * range / view.camera.MeanFocal();
+    CloudFootprint& footprint = seen->tries[cell] == 0 ? once : twice;
+    footprint.patches.push_back({point->cast<float>(), static_cast<float>(size)});
+    ++seen->tries[cell];
+  }
+  for (auto [footprint, all] : {std::pair(&once, &given_up->once),
+                                std::pair(&twice, &given_up->twice)}) {
+    if (footprint->patches.empty()) continue;
+    footprint->UpdateSphere();
+    all->push_back(std::move(*footprint));
+  }
 }
 
 }  // namespace colmap_seapoint

@@ -33,17 +33,42 @@ struct CompletionCandidate {
 std::vector<double> PredictRanges(const SparseModel& model, const PosedImage& image,
                                   const View& view, const ViewCoverage& coverage);
 
+// Surface that completion pairs were to cover and could not, after one and after two tries: hidden,
+// too steep, without texture. What failed twice is not tried again, from whatever picture.
+struct GivenUp {
+  std::vector<CloudFootprint> once, twice;
+};
+
+// A picture as the completion pass sees it, cell by cell.
+struct CompletionView {
+  ViewCoverage coverage;
+  std::vector<double> predicted_range;  // PredictRanges
+  std::vector<uint8_t> tries;           // how often its surface was tried in vain, 0 .. 2
+};
+
+// Without the predicted ranges.
+CompletionView LookAt(const View& view, const CellGrid& cells,
+                      const std::vector<CloudFootprint>& footprints, const GivenUp& given_up);
+
+// The pair that completes most, and the cells it is to leave alone: all others than those it is for.
+struct CompletionTarget {
+  int partner = -1;  // position
+  std::vector<uint8_t> closed;
+};
+
 // The candidate that sees most of the picture's uncovered cells, at their predicted ranges, with a
-// baseline that can measure depth; its position, or -1 when none sees more than kMinGain of the
-// picture.
-int SelectCompletionPartner(const View& view, const ViewCoverage& coverage,
-                            const std::vector<double>& predicted_range,
-                            const std::vector<CompletionCandidate>& candidates);
+// baseline that can measure depth; none when that is less than kMinGain of the picture. Cells tried
+// once count a quarter.
+CompletionTarget SelectCompletionPartner(const View& view, const CompletionView& seen,
+                                         const std::vector<CompletionCandidate>& candidates);
 
 // Growth goes on where it once stopped: a seed in every uncovered cell that touches a covered one,
 // at its predicted range.
 std::vector<PixelPair> SeedsAlongRim(const View& view, const View& partner,
-                                     const ViewCoverage& coverage,
-                                     const std::vector<double>& predicted_range);
+                                     const CompletionView& seen);
+
+// After the pair: `filled` (empty: nothing) tells which of the target's cells it failed to cover.
+void NoteFailures(const View& view, const CompletionTarget& target,
+                  const std::vector<float>& filled, CompletionView* seen, GivenUp* given_up);
 
 }  // namespace colmap_seapoint

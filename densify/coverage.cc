@@ -80,11 +80,16 @@ ViewCoverage ProjectCoverage(const std::vector<CloudFootprint>& footprints, cons
   const double cone_angle = ViewConeAngle(camera);
   for (const CloudFootprint& footprint : footprints) {
     if (footprint.patches.empty() || !MayBeInView(footprint, cam_from_world, cone_angle)) continue;
-    for (const SurfacePatch& patch : footprint.patches) {
-      MarkPatch(patch, camera, cam_from_world, &coverage);
-    }
+    AddCoverage(footprint, camera, cam_from_world, &coverage);
   }
   return coverage;
+}
+
+void AddCoverage(const CloudFootprint& footprint, const Camera& camera,
+                 const Rigid3d& cam_from_world, ViewCoverage* coverage) {
+  for (const SurfacePatch& patch : footprint.patches) {
+    MarkPatch(patch, camera, cam_from_world, coverage);
+  }
 }
 
 }  // namespace colmap_seapoint

@@ -41,4 +41,8 @@ struct ViewCoverage {
 ViewCoverage ProjectCoverage(const std::vector<CloudFootprint>& footprints, const Camera& camera,
                              const Rigid3d& cam_from_world, const CellGrid& grid);
 
+// Adds one footprint to it.
+void AddCoverage(const CloudFootprint& footprint, const Camera& camera,
+                 const Rigid3d& cam_from_world, ViewCoverage* coverage);
+
 }  // namespace colmap_seapoint

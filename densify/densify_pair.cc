@@ -27,53 +27,149 @@ constexpr int kSmoothing = 4;         // pixels around a sample that its plane i
 constexpr float kMaxSlope = 0.75f;    // pixels of disparity a pixel, on one surface
 constexpr size_t kMinSeeds = 5;            // in new areas: fewer are not worth rectifying for
 
-bool CellIsClosed(const PairInput& input, size_t cell) {
-  return !input.closed.empty() && input.closed[cell] != 0;
+// A box of the rect plane.
+struct RectBox {
+  double x0 = 1e30, y0 = 1e30, x1 = -1e30, y1 = -1e30;
+
+  void Add(double x, double y, double reach) {
+    x0 = std::min(x0, x - reach);
+    y0 = std::min(y0, y - reach);
+    x1 = std::max(x1, x + reach);
+    y1 = std::max(y1, y + reach);
+  }
+};
+
+void Cut(double low, double high, int* begin, int* size) {
+  const double end = std::min<double>(*begin + *size, std::ceil(high));
+  const double start = std::max<double>(*begin, std::floor(low));
+  *begin = static_cast<int>(start);
+  *size = std::max(0, static_cast<int>(end - start));
 }
 
-bool CellIsFree(const PairInput& input, size_t cell) {
-  return !CellIsClosed(input, cell) &&
-         (input.covered_range.empty() || input.covered_range[cell] == 0);
-}
+// What the pair has to do: cells, seeds, and the windows that hold them.
+class Task {
+ public:
+  Task(const PairInput& input, const PairGeometry& geometry, double growth)
+      : input_(input), geometry_(geometry), growth_(growth) {
+    MakeSeeds();
+  }
 
-// The part of picture 1's window that holds free cells, with room for the correlation window, and
-// what can grow from the seeds (`growth` pixels; those in covered cells are new objects there); and
-// of picture 2's, the same rows.
-void CutToNewAreas(const PairInput& input, const PairGeometry& geometry,
-                   const std::vector<Seed>& seeds, double growth, int margin, RectWindow* window1,
-                   RectWindow* window2) {
-  double x_min = 1e30, x_max = -1e30, y_min = 1e30, y_max = -1e30;
-  for (size_t cell = 0; cell < input.cells.Size(); ++cell) {
-    if (!CellIsFree(input, cell)) continue;
-    const auto rect = geometry.RectFromPixel1(input.cells.Center(cell));
-    if (!rect) continue;
-    x_min = std::min(x_min, rect->x());
-    x_max = std::max(x_max, rect->x());
-    y_min = std::min(y_min, rect->y());
-    y_max = std::max(y_max, rect->y());
+  const std::vector<Seed>& Seeds() const { return seeds_; }
+
+  bool IsClosed(size_t cell) const {
+    return !input_.in_full && !input_.closed.empty() && input_.closed[cell] != 0;
   }
-  for (const Seed& seed : seeds) {
-    x_min = std::min(x_min, seed.x - growth);
-    x_max = std::max(x_max, seed.x + growth);
-    y_min = std::min(y_min, seed.y - growth);
-    y_max = std::max(y_max, seed.y + growth);
+  bool IsCovered(size_t cell) const {
+    return !input_.in_full && !input_.covered_range.empty() && input_.covered_range[cell] > 0;
   }
-  auto cut = [](double low, double high, int* begin, int* size) {
-    const double end = std::min<double>(*begin + *size, std::ceil(high));
-    const double start = std::max<double>(*begin, std::floor(low));
-    *begin = static_cast<int>(start);
-    *size = std::max(0, static_cast<int>(end - start));
-  };
-  const double reach = margin + 2 * input.cells.cell;
-  cut(x_min - reach, x_max + reach, &window1->x0, &window1->width);
-  const double y_low = std::max<double>(window1->y0, window2->y0);
-  const double y_high =
-      std::min<double>(window1->y0 + window1->height, window2->y0 + window2->height);
-  for (RectWindow* window : {window1, window2}) {
-    cut(std::max(y_min - reach, y_low), std::min(y_max + reach, y_high), &window->y0,
-        &window->height);
+  bool IsFree(size_t cell) const { return !IsClosed(cell) && !IsCovered(cell); }
+
+  // Cells whose surface was not reconstructed before, in_full or not.
+  std::vector<uint8_t> NewCells() const {
+    std::vector<uint8_t> is_new(input_.cells.Size(), 1);
+    for (size_t cell = 0; cell < is_new.size(); ++cell) {
+      const bool closed = !input_.closed.empty() && input_.closed[cell] != 0;
+      const bool covered = !input_.covered_range.empty() && input_.covered_range[cell] > 0;
+      is_new[cell] = !closed && !covered;
+    }
+    return is_new;
   }
-}
+
+  // The part of picture 1's window that holds free cells, and what new objects in front of covered
+  // ones can grow to; `margin` pixels around for the correlation windows.
+  RectWindow Window1(int margin) const {
+    const CellGrid& cells = input_.cells;
+    RectBox box;
+    const size_t width = static_cast<size_t>(cells.width);
+    const auto free_at = [&](size_t cell) { return IsFree(cell); };
+    for (size_t cell = 0; cell < cells.Size(); ++cell) {
+      if (!free_at(cell)) continue;
+      const bool inner = cell >= width && cell + width < cells.Size() && cell % width > 0 &&
+                         cell % width + 1 < width && free_at(cell - 1) && free_at(cell + 1) &&
+                         free_at(cell - width) && free_at(cell + width);
+      if (inner) continue;  // the box is that of the others
+      const auto rect = geometry_.RectFromPixel1(cells.Center(cell));
+      if (rect) box.Add(rect->x(), rect->y(), margin + 2 * cells.cell);
+    }
+    for (const Seed& seed : covered_seeds_) box.Add(seed.x, seed.y, growth_ + margin);
+    RectWindow window = WindowOfPicture(geometry_, false);
+    Cut(box.x0, box.x1, &window.x0, &window.width);
+    Cut(box.y0, box.y1, &window.y0, &window.height);
+    return window;
+  }
+
+  // The part of picture 2's window that window 1 may match. Disparities beyond the seeds' range, by
+  // a tenth and 16 pixels, are not looked for.
+  RectWindow Window2(const RectWindow& window1, int margin) const {
+    RectWindow window = WindowOfPicture(geometry_, true);
+    Cut(window1.x0 - MaxDisparity() - margin, window1.x0 + window1.width - MinDisparity() + margin,
+        &window.x0, &window.width);
+    Cut(window1.y0, window1.y0 + window1.height, &window.y0, &window.height);
+    return window;
+  }
+
+  // The blocks of picture 1 that open nodes need, and of picture 2 that these may match.
+  void WantBlocks(const Gate& gate, const RectWindow& window1, const RectWindow& window2,
+                  int margin, BlockMask* blocks1, BlockMask* blocks2) const {
+    const SampleGrid& nodes = gate.Nodes();
+    for (int b = 0; b < nodes.height; ++b) {
+      for (int a = 0; a < nodes.width; ++a) {
+        const int x = a * kNodeStep, y = b * kNodeStep;
+        if (gate.At(x, y) != Gate::kOpen) continue;
+        blocks1->Want(x - margin, y - margin, x + kNodeStep + margin, y + kNodeStep + margin);
+      }
+    }
+    const int reach = static_cast<int>(growth_) + margin;
+    for (const Seed& seed : covered_seeds_) {
+      const int x = static_cast<int>(seed.x) - window1.x0, y = static_cast<int>(seed.y) - window1.y0;
+      blocks1->Want(x - reach, y - reach, x + reach, y + reach);
+    }
+    const int shift = window1.x0 - window2.x0, down = window1.y0 - window2.y0;
+    for (int row = 0; row < blocks1->Rows(); ++row) {
+      for (int column = 0; column < blocks1->Columns(); ++column) {
+        if (!blocks1->Wanted(column, row)) continue;
+        const int x = column * BlockMask::kWidth + shift, y = row * BlockMask::kHeight + down;
+        blocks2->Want(x - MaxDisparity(), y, x + BlockMask::kWidth - MinDisparity(),
+                      y + BlockMask::kHeight);
+      }
+    }
+  }
+
+ private:
+  int MinDisparity() const { return static_cast<int>(0.9 * min_disparity_) - 16; }
+  int MaxDisparity() const { return static_cast<int>(1.1 * max_disparity_) + 16; }
+
+  // Pixel pairs -> seeds in the rect frame; those off the epipolar line, behind the cameras, in
+  // cells that are closed, or at the depth of what covers their cell fall away.
+  void MakeSeeds() {
+    for (const PixelPair& pair : input_.seeds) {
+      const size_t cell = input_.cells.IndexOf(pair.pixel1.x(), pair.pixel1.y());
+      if (IsClosed(cell)) continue;
+      const auto rect1 = geometry_.RectFromPixel1(pair.pixel1);
+      const auto rect2 = geometry_.RectFromPixel2(pair.pixel2);
+      if (!rect1 || !rect2 || std::abs(rect1->y() - rect2->y()) > kMaxRowDifference) continue;
+      const Seed seed{rect1->x(), rect1->y(), rect1->x() - rect2->x()};
+      if (seed.disparity < 1) continue;
+      if (IsCovered(cell)) {
+        const double covered =
+            geometry_.DisparityAtRange(seed.x, seed.y, input_.covered_range[cell]);
+        if (!Gate::Admits(static_cast<float>(covered), static_cast<float>(seed.disparity))) {
+          continue;
+        }
+        covered_seeds_.push_back(seed);
+      }
+      seeds_.push_back(seed);
+      min_disparity_ = std::min(min_disparity_, seed.disparity);
+      max_disparity_ = std::max(max_disparity_, seed.disparity);
+    }
+  }
+
+  const PairInput& input_;
+  const PairGeometry& geometry_;
+  const double growth_;  // how far a seed may spread, pixels
+  std::vector<Seed> seeds_, covered_seeds_;
+  double min_disparity_ = 1e30, max_disparity_ = 0;
+};
 
 // The gate, and the cell of picture 1 that each of its nodes lies in (-1: outside).
 struct GatedNodes {
@@ -81,8 +177,8 @@ struct GatedNodes {
   std::vector<int> cell;
 };
 
-GatedNodes MakeGate(const PairInput& input, const PairGeometry& geometry, const RectMap& map1,
-                    const RectWindow& window) {
+GatedNodes MakeGate(const PairInput& input, const Task& task, const PairGeometry& geometry,
+                    const RectMap& map1, const RectWindow& window) {
   GatedNodes gated{Gate(window, Gate::kClosed), {}};
   const SampleGrid& nodes = gated.gate.Nodes();
   gated.cell.assign(nodes.Size(), -1);
@@ -93,38 +189,14 @@ GatedNodes MakeGate(const PairInput& input, const PairGeometry& geometry, const 
       const size_t node = nodes.NodeOf(a, b);
       const size_t cell = input.cells.IndexOf(source->x(), source->y());
       gated.cell[node] = static_cast<int>(cell);
-      if (CellIsClosed(input, cell)) continue;
+      if (task.IsClosed(cell)) continue;
       gated.gate[node] = Gate::kOpen;
-      if (CellIsFree(input, cell)) continue;
+      if (task.IsFree(cell)) continue;
       gated.gate[node] = static_cast<float>(
           geometry.DisparityAtRange(nodes.RectX(a), nodes.RectY(b), input.covered_range[cell]));
     }
   }
   return gated;
-}
-
-// Pixel pairs -> seeds in the rect frame; those off the epipolar line, behind the cameras or in
-// cells that are closed fall away.
-std::vector<Seed> MakeSeeds(const PairInput& input, const PairGeometry& geometry) {
-  std::vector<Seed> seeds;
-  for (const PixelPair& pair : input.seeds) {
-    const size_t cell = input.cells.IndexOf(pair.pixel1.x(), pair.pixel1.y());
-    if (CellIsClosed(input, cell)) continue;
-    const auto rect1 = geometry.RectFromPixel1(pair.pixel1);
-    const auto rect2 = geometry.RectFromPixel2(pair.pixel2);
-    if (!rect1 || !rect2 || std::abs(rect1->y() - rect2->y()) > kMaxRowDifference) continue;
-    const Seed seed{rect1->x(), rect1->y(), rect1->x() - rect2->x()};
-    if (seed.disparity < 1) continue;
-    if (!CellIsFree(input, cell)) {
-      const double covered =
-          geometry.DisparityAtRange(seed.x, seed.y, input.covered_range[cell]);
-      if (!Gate::Admits(static_cast<float>(covered), static_cast<float>(seed.disparity))) {
-        continue;
-      }
-    }
-    seeds.push_back(seed);
-  }
-  return seeds;
 }
 
 PairResult Failed(const std::string& why) {
@@ -151,49 +223,52 @@ PairResult DensifyPair(const PairInput& input, const PartialDensificationOptions
   const auto geometry = MakePairGeometry(input.view1.camera, input.view1.cam_from_world,
                                          input.view2.camera, input.view2.cam_from_world);
   if (!geometry) return Failed("the cameras look along their baseline or coincide");
-  const std::vector<Seed> seeds = MakeSeeds(input, *geometry);
-  if (seeds.size() < kMinSeeds) return Failed("too few seeds in areas that are new");
+  const double growth =
+      options.max_expansion * std::max(input.view1.camera.width, input.view1.camera.height);
+  const Task task(input, *geometry, growth);
+  if (task.Seeds().size() < kMinSeeds) return Failed("too few seeds in areas that are new");
 
   const Timer rectification_timer;
-  RectWindow window1 = WindowOfPicture(*geometry, false);
-  RectWindow window2 = WindowOfPicture(*geometry, true);
-  const double longer_side = std::max(input.view1.camera.width, input.view1.camera.height);
-  CutToNewAreas(input, *geometry, seeds, options.max_expansion * longer_side,
-                options.window_size / 2, &window1, &window2);
-  if (std::min(window1.width, window2.width) < kMinWindow || window1.height < kMinWindow) {
+  const int margin = options.window_size / 2 + kNodeStep;
+  const RectWindow window1 = task.Window1(margin);
+  const RectWindow window2 = task.Window2(window1, margin);
+  if (std::min(window1.width, window2.width) < kMinWindow ||
+      std::min(window1.height, window2.height) < kMinWindow) {
     return Failed("the pictures do not overlap");
   }
   const RectMap map1(*geometry, false, window1, num_threads);
   const RectMap map2(*geometry, true, window2, num_threads);
-  const RectPicture picture1 = map1.Rectify(*input.gray1, num_threads);
-  const RectPicture picture2 = map2.Rectify(*input.gray2, num_threads);
-  const GatedNodes nodes = MakeGate(input, *geometry, map1, window1);
+  const GatedNodes nodes = MakeGate(input, task, *geometry, map1, window1);
+  BlockMask blocks1(window1), blocks2(window2);
+  task.WantBlocks(nodes.gate, window1, window2, margin, &blocks1, &blocks2);
+  const RectPicture picture1 = map1.Rectify(*input.gray1, blocks1, num_threads);
+  const RectPicture picture2 = map2.Rectify(*input.gray2, blocks2, num_threads);
   PairResult result;
   result.rectification_seconds = rectification_timer.WallSeconds();
 
   const Timer propagation_timer;
   const float min_zncc = static_cast<float>(options.min_zncc);
-  const int max_generations = std::max(
-      1, static_cast<int>(options.max_expansion * longer_side / kNodeStep) - kMaxRefinementSpread);
+  const int max_generations =
+      std::max(1, static_cast<int>(growth / kNodeStep) - kMaxRefinementSpread);
   PartialDisparity coarse =
-      Propagate(picture1, picture2, nodes.gate, seeds,
+      Propagate(picture1, picture2, nodes.gate, task.Seeds(),
                 {kGrowthWindow, kGrowthZncc * min_zncc, max_generations}, num_threads);
   RemoveInconsistent(nodes.gate, &coarse);
   const int step = SampleStep(input.view1.camera, options);
-  result.partial = Refine(picture1, picture2, coarse, {options.window_size, min_zncc, step},
-                          num_threads);
+  result.partial = Refine(picture1, picture2, nodes.gate, coarse,
+                          {options.window_size, min_zncc, step}, num_threads);
   RemoveContradictions(nodes.gate, num_threads, &result.partial);
   PartialSurface surface =
       FitSurface(result.partial, std::max(2, kSmoothing / step), kMaxSlope, num_threads);
   RemoveUnsupported(&surface);
   result.propagation_seconds = propagation_timer.WallSeconds();
 
-  result.num_seeds = static_cast<int>(seeds.size());
+  result.num_seeds = static_cast<int>(task.Seeds().size());
   result.num_failed_seeds = coarse.num_failed_seeds;
   result.cloud = MakePartialCloud(surface, *geometry, map1, *input.color1, num_threads);
   result.cloud.image_idx1 = input.view1.image_idx;
   result.cloud.image_idx2 = input.view2.image_idx;
-  CellTally tally = TallyCells(surface, *geometry, nodes.cell, input.cells);
+  CellTally tally = TallyCells(surface, *geometry, nodes.cell, input.cells, task.NewCells());
   result.filled = std::move(tally.filled);
   result.footprint = std::move(tally.footprint);
   return result;

@@ -33,10 +33,11 @@ struct PairInput {
   const GrayImage* gray2 = nullptr;
   std::vector<PixelPair> seeds;
   // Cells of picture 1 that are not to be reconstructed again: closed (paper: the overlap mask), or
-  // covered at a known range (ours). Either may be empty.
+  // covered at a known range (ours), where only what differs is. Either may be empty.
   CellGrid cells;
   std::vector<uint8_t> closed;
   std::vector<float> covered_range;
+  bool in_full = false;  // all of it is reconstructed nevertheless; the footprint has what is new
 };
 
 struct PairResult {

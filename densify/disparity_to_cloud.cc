@@ -11,7 +11,7 @@ namespace colmap_seapoint {
 
 namespace {
 
-constexpr float kMinFilledCell = 0.5f;
+constexpr float kMinFilledCell = 0.75f;
 
 const float* RowOf(const std::vector<float>& values, const SampleGrid& grid, int b) {
   return values.data() + static_cast<size_t>(b) * static_cast<size_t>(grid.width);
@@ -44,9 +44,12 @@ class RowToPoints {
     const float* disparity = RowOf(surface_.disparity, grid, b);
     const float* slope_x = RowOf(surface_.slope_x, grid, b);
     const float* slope_y = RowOf(surface_.slope_y, grid, b);
-    map1_.SourceRow(grid.PixelY(b), x_.data(), y_.data());
+    int first = 0;
+    while (first < grid.width && disparity[first] <= 0) ++first;
+    if (first == grid.width) return;
+    map1_.SourceRow(grid.PixelY(b), 0, grid.window.width, x_.data(), y_.data());
     const float rect_y = static_cast<float>(grid.RectY(b));
-    for (int a = 0; a < grid.width; ++a) {
+    for (int a = first; a < grid.width; ++a) {
       const float d = disparity[a];
       if (d <= 0) continue;
       const float rect_x = static_cast<float>(grid.RectX(a));
@@ -106,7 +109,8 @@ PartialCloud MakePartialCloud(const PartialSurface& surface, const PairGeometry&
 }
 
 CellTally TallyCells(const PartialSurface& surface, const PairGeometry& geometry,
-                     const std::vector<int>& cell_of_node, const CellGrid& cells) {
+                     const std::vector<int>& cell_of_node, const CellGrid& cells,
+                     const std::vector<uint8_t>& is_new) {
   const SampleGrid& grid = surface.grid;
   struct Sum {
     Eigen::Vector3f point = Eigen::Vector3f::Zero();  // (x, y, 1) / disparity: linear in the place
@@ -132,7 +136,7 @@ CellTally TallyCells(const PartialSurface& surface, const PairGeometry& geometry
     const Sum& sum = sums[cell];
     if (sum.matched == 0) continue;
     tally.filled[cell] = static_cast<float>(sum.matched) / static_cast<float>(sum.all);
-    if (tally.filled[cell] < kMinFilledCell) continue;
+    if (tally.filled[cell] < kMinFilledCell || !is_new[cell]) continue;
     const Eigen::Vector3d mean = sum.point.cast<double>() / sum.matched;
     const Eigen::Vector3d center =
         geometry.PointInWorld(mean.x() / mean.z(), mean.y() / mean.z(), 1 / mean.z());

@@ -20,9 +20,10 @@ PartialCloud MakePartialCloud(const PartialSurface& surface, const PairGeometry&
 // lies in, -1 outside the picture.
 struct CellTally {
   std::vector<float> filled;  // share of each cell's samples that hold surface, 0..1
-  CloudFootprint footprint;   // mean point of every cell of which at least half is filled
+  CloudFootprint footprint;   // mean point of every new cell of which three quarters are filled
 };
 CellTally TallyCells(const PartialSurface& surface, const PairGeometry& geometry,
-                     const std::vector<int>& cell_of_node, const CellGrid& cells);
+                     const std::vector<int>& cell_of_node, const CellGrid& cells,
+                     const std::vector<uint8_t>& is_new);
 
 }  // namespace colmap_seapoint

@@ -9,6 +9,7 @@ namespace colmap_seapoint {
 
 namespace {
 
+constexpr float kMinFilledCell = 0.75f;  // share of a cell's samples
 constexpr double kMinFilled = 0.25;  // share of samples around a SeaPoint that make it "processed"
 
 // Calls visit(cell index) for the cells whose centre lies within `radius` of (x, y).
@@ -29,6 +30,16 @@ void ForEachCellAround(const CellGrid& grid, double x, double y, double radius,
   }
 }
 
+Eigen::Vector2d PixelOf(const SeaPoint& point) { return {point.x, point.y}; }
+
+bool IsFilled(const ProcessedPicture& picture, const Eigen::Vector2d& pixel) {
+  if (picture.filled.empty()) return true;
+  const CellGrid& grid = picture.grid;
+  return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < grid.width * grid.cell &&
+         pixel.y() < grid.height * grid.cell &&
+         picture.filled[grid.IndexOf(pixel.x(), pixel.y())] >= kMinFilledCell;
+}
+
 bool IsRea(const std::vector<SeaPointLabel>& labels, uint32_t idx) {
   return labels[idx] == SeaPointLabel::kREA;
 }
@@ -42,15 +53,22 @@ double InfluenceMask::OverlapRate() const {
 }
 
 InfluenceMask MakeInfluenceMask(const CellGrid& grid, const std::vector<SeaPoint>& candidate_points,
-                                const FeatureMatches& matches,
-                                const std::vector<SeaPointLabel>& previous_labels, double radius) {
+                                const FeatureMatches& matches, const ProcessedPicture& previous,
+                                double radius) {
   InfluenceMask mask{grid, std::vector<uint8_t>(grid.Size(), 0)};
   for (const bool erasing : {false, true}) {
     for (const FeatureMatch& match : matches) {
-      if (IsRea(previous_labels, match.idx1) != erasing) continue;
+      if (IsRea(previous.labels, match.idx1) != erasing) continue;
       const SeaPoint& point = candidate_points[match.idx2];
-      ForEachCellAround(grid, point.x, point.y, radius,
-                        [&](size_t cell) { mask.marked[cell] = erasing ? 0 : 1; });
+      Eigen::Vector2d back(0, 0);  // along the match, to the previous picture
+      if (!previous.filled.empty()) back = PixelOf(previous.points[match.idx1]) - PixelOf(point);
+      ForEachCellAround(grid, point.x, point.y, radius, [&](size_t cell) {
+        if (erasing) {
+          mask.marked[cell] = 0;
+        } else if (mask.marked[cell] == 0 && IsFilled(previous, grid.Center(cell) + back)) {
+          mask.marked[cell] = 1;
+        }
+      });
     }
   }
   return mask;

@@ -24,12 +24,22 @@ struct InfluenceMask {
   double OverlapRate() const;  // share of the picture's cells, 0..1
 };
 
-// `matches`: interpair matches, idx1 in the previous first picture (labels PA / REA), idx2 in the
-// candidate. Areas around PA matches are marked; then areas around REA matches are erased.
-// `radius`: of an influence area, pixels.
+// What is known of the previous pair's first picture once that pair is densified.
+struct ProcessedPicture {
+  std::vector<SeaPoint> points;
+  std::vector<SeaPointLabel> labels;  // PA / REA, of the points
+  CellGrid grid;
+  std::vector<float> filled;  // share of each cell that is reconstructed, by whichever pair
+};
+
+// `matches`: interpair matches, idx1 in the previous first picture, idx2 in the candidate. Areas
+// around PA matches are marked; then areas around REA matches are erased. `radius`: of an influence
+// area, pixels. Ours: an area ends where, carried back along its match, it leaves what is filled;
+// the paper's whole discs (those of an empty `filled`) close strips beyond the previous picture's rim
+// that no pair has seen.
 InfluenceMask MakeInfluenceMask(const CellGrid& grid, const std::vector<SeaPoint>& candidate_points,
-                                const FeatureMatches& matches,
-                                const std::vector<SeaPointLabel>& previous_labels, double radius);
+                                const FeatureMatches& matches, const ProcessedPicture& previous,
+                                double radius);
 
 // Labels of the candidate's SeaPoints: OA in the mask, REA near an erasing match, NA elsewhere.
 std::vector<SeaPointLabel> LabelSeaPoints(const InfluenceMask& mask,

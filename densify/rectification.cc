@@ -151,24 +151,46 @@ std::optional<Eigen::Vector2f> RectMap::Source(int i, int j) const {
   return source;
 }
 
-void RectMap::SourceRow(int j, float* x, float* y) const {
-  const Eigen::Vector2f* above =
-      nodes_.data() + static_cast<size_t>(j / kCell) * static_cast<size_t>(nodes_x_);
-  rectify::InterpolateRow(above->data(), (above + nodes_x_)->data(),
-                          static_cast<float>(j % kCell) / kCell, window_.width, x, y);
+BlockMask::BlockMask(const RectWindow& window)
+    : columns_((window.width + kWidth - 1) / kWidth),
+      rows_((window.height + kHeight - 1) / kHeight),
+      wanted_(static_cast<size_t>(columns_) * static_cast<size_t>(rows_), 0) {}
+
+void BlockMask::Want(int x0, int y0, int x1, int y1) {
+  const int a1 = std::min(columns_, (x1 + kWidth - 1) / kWidth);
+  const int b1 = std::min(rows_, (y1 + kHeight - 1) / kHeight);
+  for (int b = std::max(0, y0) / kHeight; b < b1; ++b) {
+    for (int a = std::max(0, x0) / kWidth; a < a1; ++a) {
+      wanted_[static_cast<size_t>(b) * static_cast<size_t>(columns_) + static_cast<size_t>(a)] = 1;
+    }
+  }
 }
 
-RectPicture RectMap::Rectify(const GrayImage& source, int num_threads) const {
+void RectMap::SourceRow(int j, int begin, int end, float* x, float* y) const {
+  const Eigen::Vector2f* above = nodes_.data() +
+                                 static_cast<size_t>(j / kCell) * static_cast<size_t>(nodes_x_) +
+                                 static_cast<size_t>(begin / kCell);
+  rectify::InterpolateRow(above->data(), (above + nodes_x_)->data(),
+                          static_cast<float>(j % kCell) / kCell, end - begin, x, y);
+}
+
+RectPicture RectMap::Rectify(const GrayImage& source, const BlockMask& blocks,
+                             int num_threads) const {
   RectPicture picture{window_, GrayImage(window_.width, window_.height)};
   picture.gray.data.resize(picture.gray.data.size() + RectPicture::kSlack);
-  constexpr int kBand = 16;  // rows a task
-  ParallelFor(num_threads, (window_.height + kBand - 1) / kBand, [&](int64_t band) {
-    const int begin = static_cast<int>(band) * kBand;
-    const int end = std::min(window_.height, begin + kBand);
+  ParallelFor(num_threads, blocks.Rows(), [&](int64_t band) {
+    const int row = static_cast<int>(band);
+    const int j_end = std::min(window_.height, (row + 1) * BlockMask::kHeight);
     std::vector<float> x(static_cast<size_t>(window_.width) + kRowSlack), y(x.size());
-    for (int j = begin; j < end; ++j) {
-      SourceRow(j, x.data(), y.data());
-      rectify::SampleRow(source, x.data(), y.data(), window_.width, picture.gray.Row(j));
+    for (int column = 0; column < blocks.Columns(); ++column) {
+      if (!blocks.Wanted(column, row)) continue;
+      const int begin = column * BlockMask::kWidth;
+      while (column < blocks.Columns() && blocks.Wanted(column, row)) ++column;
+      const int end = std::min(window_.width, column * BlockMask::kWidth);
+      for (int j = row * BlockMask::kHeight; j < j_end; ++j) {
+        SourceRow(j, begin, end, x.data(), y.data());
+        rectify::SampleRow(source, x.data(), y.data(), end - begin, picture.gray.Row(j) + begin);
+      }
     }
   });
   return picture;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -45,9 +46,29 @@ struct RectWindow {
 // The smallest window that holds the picture's part of the rect plane, up to 72 degrees aside.
 RectWindow WindowOfPicture(const PairGeometry& geometry, bool second);
 
+// The blocks of a window that are wanted: what is asked for of a large window is often little.
+class BlockMask {
+ public:
+  static constexpr int kWidth = 64, kHeight = 16;  // pixels
+
+  explicit BlockMask(const RectWindow& window);
+  // The blocks that hold a pixel x0 <= x < x1, y0 <= y < y1 of the window.
+  void Want(int x0, int y0, int x1, int y1);
+  bool Wanted(int column, int row) const {
+    return wanted_[static_cast<size_t>(row) * static_cast<size_t>(columns_) +
+                   static_cast<size_t>(column)] != 0;
+  }
+  int Columns() const { return columns_; }
+  int Rows() const { return rows_; }
+
+ private:
+  int columns_, rows_;
+  std::vector<uint8_t> wanted_;
+};
+
 struct RectPicture {
   RectWindow window;
-  GrayImage gray;  // as large as the window; 0 outside the picture, 1..255 in it
+  GrayImage gray;  // as large as the window; 0 outside the picture and where not wanted, else 1..255
 
   // Bytes behind the last pixel that may be read (vectors reach beyond a window).
   static constexpr size_t kSlack = 16;
@@ -62,11 +83,11 @@ class RectMap {
   RectMap(const PairGeometry& geometry, bool second, const RectWindow& window, int num_threads);
   // Source position (pixels) of the window's pixel (i, j); nullopt outside the picture.
   std::optional<Eigen::Vector2f> Source(int i, int j) const;
-  // The same for the whole row j, NaN or beyond the picture where there is none; x and y hold
-  // window.width + kRowSlack values.
-  void SourceRow(int j, float* x, float* y) const;
+  // The same for the pixels begin .. end - 1 of row j, begin a multiple of 8: NaN or beyond the
+  // picture where there is none; x and y, from pixel begin on, have room for kRowSlack more.
+  void SourceRow(int j, int begin, int end, float* x, float* y) const;
   // Bilinear. Rows are spread over threads.
-  RectPicture Rectify(const GrayImage& source, int num_threads) const;
+  RectPicture Rectify(const GrayImage& source, const BlockMask& blocks, int num_threads) const;
 
  private:
   RectWindow window_;

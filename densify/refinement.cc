@@ -116,16 +116,17 @@ struct SampleBox {
   int begin_a, begin_b, end_a, end_b;
 };
 
-// Nodes of the tile (without the ring) that the layer may fill: its own and their neighbours.
-// Returns false when there are none.
+// Nodes of the tile (without the ring) that the layer may fill: of the open ones its own and their
+// neighbours. Returns false when there are none.
 struct NodeBox {
   int u0 = kNodesX, v0 = kNodesY, u1 = 0, v1 = 0;  // u1, v1: one beyond
 };
 
-bool Widen(const Layer& layer, Layer* wide, NodeBox* box) {
+bool Widen(const Layer& layer, const Layer& open, Layer* wide, NodeBox* box) {
   *wide = Layer{};
   for (int v = 1; v <= kOwnY; ++v) {
     for (int u = 1; u <= kOwnX; ++u) {
+      if (!open[static_cast<size_t>(v)][static_cast<size_t>(u)]) continue;
       bool near = false;
       for (int y = v - 1; y <= v + 1; ++y) {
         for (int x = u - 1; x <= u + 1; ++x) {
@@ -145,9 +146,9 @@ bool Widen(const Layer& layer, Layer* wide, NodeBox* box) {
 
 class Refinement {
  public:
-  Refinement(const RectPicture& picture1, const RectPicture& picture2,
+  Refinement(const RectPicture& picture1, const RectPicture& picture2, const Gate& gate,
              const PartialDisparity& nodes, const RefinementOptions& options)
-      : nodes_(nodes), options_(options) {
+      : gate_(gate), nodes_(nodes), options_(options) {
     pair_.gray1 = &picture1.gray;
     pair_.gray2 = &picture2.gray;
     pair_.column_shift = picture1.window.x0 - picture2.window.x0;
@@ -178,48 +179,28 @@ class Refinement {
     }
   }
 
-  // Nodes that had no disparity and whose square is largely matched now take it over; returns the
-  // tiles that see such a node.
-  std::vector<int> GrowNodes(PartialDisparity* nodes) const {
-    const SampleGrid& grid = result_.grid;
+  // Nodes of the tiles that had no disparity and whose square is largely matched now take it over;
+  // returns the tiles that see such a node.
+  std::vector<int> GrowNodes(const std::vector<int>& tiles, PartialDisparity* nodes) const {
     std::vector<uint8_t> touched(static_cast<size_t>(TilesX()) * static_cast<size_t>(TilesY()), 0);
-    for (int b = 0; b < nodes->grid.height; ++b) {
-      for (int a = 0; a < nodes->grid.width; ++a) {
-        float& node = nodes->disparity[static_cast<size_t>(b) *
-                                           static_cast<size_t>(nodes->grid.width) +
-                                       static_cast<size_t>(a)];
-        if (node > 0) continue;
-        int all = 0;
-        std::array<float, kNodeStep * kNodeStep> found;
-        size_t num_found = 0;
-        for (int v = grid.FirstFrom(b * kNodeStep);
-             v < std::min(grid.height, grid.FirstFrom((b + 1) * kNodeStep)); ++v) {
-          for (int u = grid.FirstFrom(a * kNodeStep);
-               u < std::min(grid.width, grid.FirstFrom((a + 1) * kNodeStep)); ++u) {
-            ++all;
-            const float d = result_.disparity[static_cast<size_t>(v) *
-                                                  static_cast<size_t>(grid.width) +
-                                              static_cast<size_t>(u)];
-            if (d > 0) found[num_found++] = d;
-          }
-        }
-        if (num_found == 0 || 2 * static_cast<int>(num_found) < all) continue;
-        std::nth_element(found.begin(), found.begin() + num_found / 2, found.begin() + num_found);
-        node = found[num_found / 2];
-        for (const int y : {(b - 1) / kOwnY, (b + 1) / kOwnY}) {
-          for (const int x : {(a - 1) / kOwnX, (a + 1) / kOwnX}) {
-            if (x < 0 || y < 0 || x >= TilesX() || y >= TilesY()) continue;
-            touched[static_cast<size_t>(y) * static_cast<size_t>(TilesX()) +
-                    static_cast<size_t>(x)] = 1;
-          }
+    for (const int tile : tiles) {
+      const int first_a = tile % TilesX() * kOwnX, first_b = tile / TilesX() * kOwnY;
+      const int end_a = std::min(nodes->grid.width, first_a + kOwnX);
+      const int end_b = std::min(nodes->grid.height, first_b + kOwnY);
+      for (int b = first_b; b < end_b; ++b) {
+        for (int a = first_a; a < end_a; ++a) {
+          float& node = nodes->disparity[nodes->grid.NodeOf(a, b)];
+          if (node > 0 || gate_.At(a * kNodeStep, b * kNodeStep) == Gate::kClosed) continue;
+          node = MedianInNode(a, b);
+          if (node > 0) Touch(a, b, &touched);
         }
       }
     }
-    std::vector<int> tiles;
+    std::vector<int> next;
     for (size_t t = 0; t < touched.size(); ++t) {
-      if (touched[t]) tiles.push_back(static_cast<int>(t));
+      if (touched[t]) next.push_back(static_cast<int>(t));
     }
-    return tiles;
+    return next;
   }
 
   PartialDisparity TakeResult() { return std::move(result_); }
@@ -228,7 +209,7 @@ class Refinement {
   void MatchLayer(const tile::Prediction& surface, const Layer& layer, int tile_a, int tile_b) {
     Layer wide;
     NodeBox box;
-    if (!Widen(layer, &wide, &box)) return;
+    if (!Widen(layer, OpenNodes(tile_a, tile_b), &wide, &box)) return;
     const SampleGrid& grid = result_.grid;
     tile::Region region;
     region.tile_x = tile_a * tile::kWidth;
@@ -248,6 +229,51 @@ class Refinement {
     if (MatchRegion(surface, wide, region, samples, options_.window_size, options_.min_zncc) &&
         options_.window_size > kSmallWindow) {
       MatchRegion(surface, wide, region, samples, kSmallWindow, options_.min_zncc + kSmallZncc);
+    }
+  }
+
+  Layer OpenNodes(int tile_a, int tile_b) const {
+    Layer open{};
+    for (int v = 1; v <= kOwnY; ++v) {
+      for (int u = 1; u <= kOwnX; ++u) {
+        const int a = tile_a * kOwnX + u - 1, b = tile_b * kOwnY + v - 1;
+        open[static_cast<size_t>(v)][static_cast<size_t>(u)] =
+            a < nodes_.grid.width && b < nodes_.grid.height &&
+            gate_.At(a * kNodeStep, b * kNodeStep) != Gate::kClosed;
+      }
+    }
+    return open;
+  }
+
+  // The median of a node's samples, 0 when fewer than half are matched.
+  float MedianInNode(int a, int b) const {
+    const SampleGrid& grid = result_.grid;
+    std::array<float, kNodeStep * kNodeStep> found;
+    size_t num_found = 0, all = 0;
+    const int end_a = std::min(grid.width, grid.FirstFrom((a + 1) * kNodeStep));
+    const int end_b = std::min(grid.height, grid.FirstFrom((b + 1) * kNodeStep));
+    for (int v = grid.FirstFrom(b * kNodeStep); v < end_b; ++v) {
+      for (int u = grid.FirstFrom(a * kNodeStep); u < end_a; ++u) {
+        const float disparity = result_.disparity[static_cast<size_t>(v) *
+                                                      static_cast<size_t>(grid.width) +
+                                                  static_cast<size_t>(u)];
+        ++all;
+        if (disparity > 0) found[num_found++] = disparity;
+      }
+    }
+    if (num_found == 0 || 2 * num_found < all) return 0;
+    const auto middle = found.begin() + static_cast<std::ptrdiff_t>(num_found / 2);
+    std::nth_element(found.begin(), middle, found.begin() + static_cast<std::ptrdiff_t>(num_found));
+    return *middle;
+  }
+
+  // Marks the tiles whose patch holds a node.
+  void Touch(int a, int b, std::vector<uint8_t>* touched) const {
+    for (int y = std::max(0, b - 1) / kOwnY; y <= std::min(TilesY() - 1, (b + 1) / kOwnY); ++y) {
+      for (int x = std::max(0, a - 1) / kOwnX; x <= std::min(TilesX() - 1, (a + 1) / kOwnX); ++x) {
+        (*touched)[static_cast<size_t>(y) * static_cast<size_t>(TilesX()) +
+                   static_cast<size_t>(x)] = 1;
+      }
     }
   }
 
@@ -284,6 +310,7 @@ class Refinement {
     return any_empty;
   }
 
+  const Gate& gate_;
   const PartialDisparity& nodes_;
   const RefinementOptions options_;
   tile::Pair pair_;
@@ -293,12 +320,12 @@ class Refinement {
 }  // namespace
 
 PartialDisparity Refine(const RectPicture& picture1, const RectPicture& picture2,
-                        const PartialDisparity& nodes, const RefinementOptions& options,
-                        int num_threads) {
+                        const Gate& gate, const PartialDisparity& nodes,
+                        const RefinementOptions& options, int num_threads) {
   // Noise in a node would bend every window around it.
   PartialDisparity smooth = nodes;
   smooth.disparity = FitSurface(nodes, 1, kMaxSlope, num_threads).disparity;
-  Refinement refinement(picture1, picture2, smooth, options);
+  Refinement refinement(picture1, picture2, gate, smooth, options);
   const int tiles_x = refinement.TilesX(), tiles_y = refinement.TilesY();
   std::vector<int> tiles(static_cast<size_t>(tiles_x) * static_cast<size_t>(tiles_y));
   std::iota(tiles.begin(), tiles.end(), 0);
@@ -307,7 +334,7 @@ PartialDisparity Refine(const RectPicture& picture1, const RectPicture& picture2
       const int tile = tiles[static_cast<size_t>(t)];
       refinement.RefineTile(tile % tiles_x, tile / tiles_x);
     });
-    tiles = refinement.GrowNodes(&smooth);
+    tiles = refinement.GrowNodes(tiles, &smooth);
   }
   PartialDisparity result = refinement.TakeResult();
   result.num_failed_seeds = nodes.num_failed_seeds;

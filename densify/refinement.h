@@ -18,11 +18,11 @@ struct RefinementOptions {
 inline constexpr int kMaxRefinementSpread = 4;
 
 // `nodes`: Propagate's, a node every kNodeStep pixels of picture 1's window. Samples lie in the
-// surroundings of matched nodes (kMaxRefinementSpread), nowhere else. Tiles of 64 x 32 pixels are
+// surroundings of matched nodes (kMaxRefinementSpread), never at closed ones. Tiles of 64 x 32 pixels are
 // independent: the same result for any number of threads. Cost: about 10 ns a pixel in them,
 // whatever the window; memory: the result's.
 PartialDisparity Refine(const RectPicture& picture1, const RectPicture& picture2,
-                        const PartialDisparity& nodes, const RefinementOptions& options,
-                        int num_threads);
+                        const Gate& gate, const PartialDisparity& nodes,
+                        const RefinementOptions& options, int num_threads);
 
 }  // namespace colmap_seapoint

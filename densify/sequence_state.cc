@@ -102,7 +102,7 @@ double SequenceState::InterpairOverlap(int first, int candidate) {
   const auto points = SeaPointsAt(candidate);
   const auto matches = MatchesOf(first, candidate);
   const double radius = options_.influence_radius * LongerSide(candidate);
-  return MakeInfluenceMask(CellsAt(candidate), points->points, *matches, previous_labels_, radius)
+  return MakeInfluenceMask(CellsAt(candidate), points->points, *matches, previous_, radius)
       .OverlapRate();
 }
 
@@ -131,9 +131,9 @@ SequenceState::Overlap SequenceState::AssessOverlap(int first) {
   overlap.labels.assign(points->points.size(), SeaPointLabel::kNA);
   if (previous_first_ >= 0) {
     const auto matches = MatchesOf(previous_first_, first);
-    overlap.mask = MakeInfluenceMask(cells, points->points, *matches, previous_labels_, radius);
+    overlap.mask = MakeInfluenceMask(cells, points->points, *matches, previous_, radius);
     overlap.labels =
-        LabelSeaPoints(overlap.mask, points->points, *matches, previous_labels_, radius);
+        LabelSeaPoints(overlap.mask, points->points, *matches, previous_.labels, radius);
     overlap.rate = overlap.mask.OverlapRate();
     overlap.closed = overlap.mask.marked;
   }
@@ -214,10 +214,9 @@ bool SequenceState::RunPair(int first, int second, const Overlap& overlap,
   input.gray2 = &picture2->gray;
   input.seeds = std::move(seeds);
   input.cells = CellsAt(first);
-  if (options_.mode == "partial") {
-    input.closed = overlap.closed;
-    input.covered_range = overlap.covered_range;
-  }
+  input.closed = overlap.closed;
+  input.covered_range = overlap.covered_range;
+  input.in_full = options_.mode == "complete";
   *result = DensifyPair(input, options_, num_threads_);
   report->overlap = overlap.rate;
   report->skipped = result->failure;
@@ -258,13 +257,12 @@ void SequenceState::ShowPair(int first, int second, const Overlap& overlap,
     previous_points = SeaPointsAt(previous_first_);
     debug.previous_color = previous ? &previous->color : nullptr;
     debug.previous_points = &previous_points->points;
-    debug.previous_labels = previous_labels_;
+    debug.previous_labels = previous_.labels;
     debug.interpair = *MatchesOf(previous_first_, first);
     debug.mask = overlap.mask;
     debug.influence_radius0 = options_.influence_radius * LongerSide(previous_first_);
   }
-  input.closed.clear();
-  input.covered_range.clear();
+  input.in_full = true;
   const std::vector<PixelPair> all_seeds = SeedsFromMatches(first, second, {});
   input.seeds.insert(input.seeds.end(), all_seeds.begin(), all_seeds.end());
   debug.normal = DensifyPair(input, options_, num_threads_);
@@ -302,38 +300,45 @@ void SequenceState::DensifyNewAreas(int first, int second) {
     if (done_before) result.filled[cell] = 1;
   }
   previous_first_ = first;
-  previous_labels_ = RelabelProcessed(cells, result.filled, SeaPointsAt(first)->points,
+  previous_.points = SeaPointsAt(first)->points;
+  previous_.labels = RelabelProcessed(cells, result.filled, previous_.points,
                                       options_.influence_radius * LongerSide(first));
+  previous_.grid = cells;
+  previous_.filled = std::move(result.filled);
 }
 
 void SequenceState::Complete(int position) {
   constexpr int kMaxPartners = 3;
   if (options_.redundancy != "all") return;
-  for (int partner_count = 0; partner_count < kMaxPartners; ++partner_count) {
-    const View view = ViewAt(position);
-    const CellGrid cells = CellsAt(position);
-    Overlap overlap;
-    const ViewCoverage coverage =
-        ProjectCoverage(footprints_, view.camera, view.cam_from_world, cells);
-    overlap.covered_range = coverage.range;
-    overlap.rate = coverage.CoveredShare();
-    std::vector<CompletionCandidate> candidates;
-    for (const int partner : covisible_[static_cast<size_t>(position)]) {
-      if (densified_pairs_.count(Ordered(position, partner)) == 0) {
-        candidates.push_back({partner, ViewAt(partner)});
-      }
+  const View view = ViewAt(position);
+  std::vector<CompletionCandidate> candidates;
+  for (const int partner : covisible_[static_cast<size_t>(position)]) {
+    if (densified_pairs_.count(Ordered(position, partner)) == 0) {
+      candidates.push_back({partner, ViewAt(partner)});
     }
-    const std::vector<double> range = PredictRanges(model_, ImageAt(position), view, coverage);
-    const int partner = SelectCompletionPartner(view, coverage, range, candidates);
-    if (partner < 0) return;
-    PairReport report = NewReport(position, partner, "completion");
-    std::vector<PixelPair> seeds = SeedsFromMatches(position, partner, {});
-    AppendModelSeeds(position, partner, &seeds);
-    const std::vector<PixelPair> rim = SeedsAlongRim(view, ViewAt(partner), coverage, range);
+  }
+  CompletionView seen = LookAt(view, CellsAt(position), footprints_, given_up_);
+  for (int tries = 0; tries < kMaxPartners && !candidates.empty(); ++tries) {
+    seen.predicted_range = PredictRanges(model_, ImageAt(position), view, seen.coverage);
+    const CompletionTarget target = SelectCompletionPartner(view, seen, candidates);
+    if (target.partner < 0) return;
+    candidates.erase(std::find_if(candidates.begin(), candidates.end(), [&](const auto& candidate) {
+      return candidate.position == target.partner;
+    }));
+    Overlap overlap;
+    overlap.rate = seen.coverage.CoveredShare();
+    overlap.closed = target.closed;
+    PairReport report = NewReport(position, target.partner, "completion");
+    std::vector<PixelPair> seeds = SeedsFromMatches(position, target.partner, {});
+    AppendModelSeeds(position, target.partner, &seeds);
+    const std::vector<PixelPair> rim = SeedsAlongRim(view, ViewAt(target.partner), seen);
     seeds.insert(seeds.end(), rim.begin(), rim.end());
     PairResult result;
-    RunPair(position, partner, overlap, std::move(seeds), &report, &result);
+    if (RunPair(position, target.partner, overlap, std::move(seeds), &report, &result)) {
+      AddCoverage(footprints_.back(), view.camera, view.cam_from_world, &seen.coverage);
+    }
     report_.pairs.push_back(report);
+    NoteFailures(view, target, result.filled, &seen, &given_up_);
   }
 }
 

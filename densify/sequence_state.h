@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "densify/completion.h"
 #include "densify/coverage.h"
 #include "densify/densify_pair.h"
 #include "densify/densify_sequence.h"
@@ -80,8 +81,9 @@ class SequenceState {
   PictureCache cache_;
 
   int previous_first_ = -1;
-  std::vector<SeaPointLabel> previous_labels_;  // PA / REA, of previous_first_'s SeaPoints
+  ProcessedPicture previous_;  // of previous_first_
   std::vector<CloudFootprint> footprints_;
+  GivenUp given_up_;  // by the completion pass
   std::set<std::pair<int, int>> densified_pairs_;  // positions, smaller first
   std::vector<std::vector<int>> covisible_;  // position -> positions, most shared points first
   SequenceReport report_;

@@ -63,7 +63,7 @@ InfluenceMask MatchedArea(const CellGrid& grid, size_t num_points1,
                           const std::vector<SeaPoint>& points2, const FeatureMatches& matches,
                           double radius) {
   const std::vector<SeaPointLabel> all_processed(num_points1, SeaPointLabel::kPA);
-  return MakeInfluenceMask(grid, points2, matches, all_processed, radius);
+  return MakeInfluenceMask(grid, points2, matches, {{}, all_processed, {}, {}}, radius);
 }
 
 Texture FindTexture(const GrayImage& picture, const CellGrid& grid) {

@@ -130,51 +130,101 @@ std::vector<double> TrueRanges(const View& view) {
   return range;
 }
 
+CompletionView SeenAs(const ViewCoverage& coverage, const std::vector<double>& range) {
+  return {coverage, range, std::vector<uint8_t>(coverage.grid.Size(), 0)};
+}
+
+int Partner(const View& view, const ViewCoverage& coverage, const std::vector<double>& range,
+            const std::vector<CompletionCandidate>& candidates) {
+  return SelectCompletionPartner(view, SeenAs(coverage, range), candidates).partner;
+}
+
 TEST(SelectCompletionPartnerTest, PicksTheOneThatSeesTheHole) {
   const View view = ViewAbove(0);
   const ViewCoverage coverage = LeftHalfCovered(view, kGrid);
   const std::vector<double> range = TrueRanges(view);
   const CompletionCandidate left = {3, ViewAbove(-0.8)}, right = {7, ViewAbove(0.4)},
                             far_right = {8, ViewAbove(1.1)}, beyond = {9, ViewAbove(5)};
-  EXPECT_EQ(SelectCompletionPartner(view, coverage, range, {left, right, far_right, beyond}), 7);
-  EXPECT_EQ(SelectCompletionPartner(view, coverage, range, {beyond, far_right, right, left}), 7);
-  EXPECT_EQ(SelectCompletionPartner(view, coverage, range, {left, far_right}), 8);
-  EXPECT_EQ(SelectCompletionPartner(view, coverage, range, {beyond}), -1);
-  EXPECT_EQ(SelectCompletionPartner(view, coverage, range, {}), -1);
+  EXPECT_EQ(Partner(view, coverage, range, {left, right, far_right, beyond}), 7);
+  EXPECT_EQ(Partner(view, coverage, range, {beyond, far_right, right, left}), 7);
+  EXPECT_EQ(Partner(view, coverage, range, {left, far_right}), 8);
+  EXPECT_EQ(Partner(view, coverage, range, {beyond}), -1);
+  EXPECT_EQ(Partner(view, coverage, range, {}), -1);
 }
 
 TEST(SelectCompletionPartnerTest, BaselineMustMeasureDepth) {
   const View view = ViewAbove(0);
   const ViewCoverage coverage = LeftHalfCovered(view, kGrid);
   const std::vector<double> range = TrueRanges(view);
-  EXPECT_EQ(SelectCompletionPartner(view, coverage, range, {{1, ViewAbove(0.02)}}), -1);
-  EXPECT_EQ(SelectCompletionPartner(view, coverage, range, {{1, ViewAbove(0)}}), -1);
-  EXPECT_EQ(SelectCompletionPartner(view, coverage, range, {{1, ViewAbove(0.2)}}), 1);
+  EXPECT_EQ(Partner(view, coverage, range, {{1, ViewAbove(0.02)}}), -1);
+  EXPECT_EQ(Partner(view, coverage, range, {{1, ViewAbove(0)}}), -1);
+  EXPECT_EQ(Partner(view, coverage, range, {{1, ViewAbove(0.2)}}), 1);
 }
 
 TEST(SelectCompletionPartnerTest, NothingUncoveredNoPartner) {
   const View view = ViewAbove(0);
   const std::vector<double> range = TrueRanges(view);
   ViewCoverage full{kGrid, std::vector<float>(kGrid.Size(), 2.f)};
-  EXPECT_EQ(SelectCompletionPartner(view, full, range, {{1, ViewAbove(0.2)}}), -1);
+  EXPECT_EQ(Partner(view, full, range, {{1, ViewAbove(0.2)}}), -1);
   // A few open cells are not worth a pair: 0.3 % of 1200 are 3.6.
   for (size_t cell = 600; cell < 603; ++cell) full.range[cell] = 0;
-  EXPECT_EQ(SelectCompletionPartner(view, full, range, {{1, ViewAbove(0.2)}}), -1);
+  EXPECT_EQ(Partner(view, full, range, {{1, ViewAbove(0.2)}}), -1);
   for (size_t cell = 600; cell < 610; ++cell) full.range[cell] = 0;
-  EXPECT_EQ(SelectCompletionPartner(view, full, range, {{1, ViewAbove(0.2)}}), 1);
+  EXPECT_EQ(Partner(view, full, range, {{1, ViewAbove(0.2)}}), 1);
+}
+
+// The pair is for the uncovered cells that its partner sees, and for nothing else.
+TEST(SelectCompletionPartnerTest, ClosesAllButItsTarget) {
+  const View view = ViewAbove(0), partner = ViewAbove(0.3);
+  CompletionView seen = SeenAs(LeftHalfCovered(view, kGrid), TrueRanges(view));
+  seen.tries[25] = 2;
+  const CompletionTarget target = SelectCompletionPartner(view, seen, {{4, partner}});
+  ASSERT_EQ(target.partner, 4);
+  int num_open = 0;
+  for (size_t cell = 0; cell < kGrid.Size(); ++cell) {
+    if (target.closed[cell]) continue;
+    ++num_open;
+    EXPECT_EQ(seen.coverage.range[cell], 0);
+    EXPECT_NE(cell, 25u);
+  }
+  EXPECT_GT(num_open, 300);
+}
+
+// What failed twice is not tried again; once counts less.
+TEST(GivenUpTest, AfterTwoFailures) {
+  const View view = ViewAbove(0);
+  const std::vector<CloudFootprint> nothing;
+  GivenUp given_up;
+  const CompletionCandidate candidate = {4, ViewAbove(0.3)};
+  for (int tries = 0; tries < 2; ++tries) {
+    CompletionView seen = LookAt(view, kGrid, nothing, given_up);
+    seen.predicted_range = TrueRanges(view);
+    const CompletionTarget target = SelectCompletionPartner(view, seen, {candidate});
+    ASSERT_EQ(target.partner, 4) << tries;
+    NoteFailures(view, target, {}, &seen, &given_up);
+  }
+  CompletionView seen = LookAt(view, kGrid, nothing, given_up);
+  seen.predicted_range = TrueRanges(view);
+  EXPECT_EQ(SelectCompletionPartner(view, seen, {candidate}).partner, -1);
+  // From elsewhere it is the same surface.
+  CompletionView aside = LookAt(ViewAbove(0.1), kGrid, nothing, given_up);
+  aside.predicted_range = TrueRanges(ViewAbove(0.1));
+  int num_given_up = 0;
+  for (const uint8_t count : aside.tries) num_given_up += count == 2;
+  EXPECT_GT(num_given_up, static_cast<int>(kGrid.Size() / 2));
 }
 
 TEST(SeedsAlongRimTest, OnePerOpenCellBesideACoveredOne) {
   const View view = ViewAbove(0), partner = ViewAbove(0.3);
   const ViewCoverage coverage = LeftHalfCovered(view, kGrid);
-  const std::vector<PixelPair> seeds = SeedsAlongRim(view, partner, coverage, TrueRanges(view));
+  const std::vector<PixelPair> seeds = SeedsAlongRim(view, partner, SeenAs(coverage, TrueRanges(view)));
   ASSERT_EQ(seeds.size(), 30u);  // column 20, all rows
   for (const PixelPair& seed : seeds) {
     EXPECT_EQ(seed.pixel1.x(), 205);
     EXPECT_NEAR(seed.pixel2.x(), 205 - 400 * 0.3 / kDepth, 1e-9);
     EXPECT_NEAR(seed.pixel2.y(), seed.pixel1.y(), 1e-9);
   }
-  EXPECT_TRUE(SeedsAlongRim(view, ViewAbove(5), coverage, TrueRanges(view)).empty());
+  EXPECT_TRUE(SeedsAlongRim(view, ViewAbove(5), SeenAs(coverage, TrueRanges(view))).empty());
 }
 
 }  // namespace

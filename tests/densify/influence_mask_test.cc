@@ -21,6 +21,9 @@ SeaPoint At(double x, double y) {
 // 20 x 10 cells of 10 pixels; cell (a, b) has its centre at (10 a + 5, 10 b + 5).
 const CellGrid kGrid(200, 100, 10);
 
+// All of the previous picture is filled: the paper's whole discs.
+ProcessedPicture Labelled(const std::vector<SeaPointLabel>& labels) { return {{}, labels, {}, {}}; }
+
 bool Marked(const InfluenceMask& mask, int a, int b) {
   return mask.marked[static_cast<size_t>(20 * b + a)] != 0;
 }
@@ -32,7 +35,7 @@ int NumMarked(const InfluenceMask& mask) {
 // Paper 2.5, Figures 10 and 11: circles around the interpair SeaPoints.
 TEST(InfluenceMaskTest, MarksACircleAroundEveryMatch) {
   const InfluenceMask mask =
-      MakeInfluenceMask(kGrid, {At(55, 45), At(145, 45)}, {{0, 0}}, {kPA}, 21);
+      MakeInfluenceMask(kGrid, {At(55, 45), At(145, 45)}, {{0, 0}}, Labelled({kPA}), 21);
   // Radius 21 around the centre of cell (5, 4): 13 cells of the disc x^2 + y^2 <= 4.41.
   EXPECT_EQ(NumMarked(mask), 13);
   EXPECT_TRUE(Marked(mask, 5, 4) && Marked(mask, 7, 4) && Marked(mask, 5, 2) && Marked(mask, 6, 5));
@@ -43,10 +46,25 @@ TEST(InfluenceMaskTest, MarksACircleAroundEveryMatch) {
 TEST(InfluenceMaskTest, OverlappingCirclesCountOnceAndBordersCut) {
   const std::vector<SeaPoint> points = {At(5, 5), At(6, 5), At(200, 100)};
   const InfluenceMask mask =
-      MakeInfluenceMask(kGrid, points, {{0, 0}, {1, 1}, {2, 2}}, {kPA, kPA, kPA}, 11);
+      MakeInfluenceMask(kGrid, points, {{0, 0}, {1, 1}, {2, 2}}, Labelled({kPA, kPA, kPA}), 11);
   EXPECT_EQ(NumMarked(mask), 3 + 1);
   EXPECT_TRUE(Marked(mask, 0, 0) && Marked(mask, 1, 0) && Marked(mask, 0, 1) &&
               Marked(mask, 19, 9));
+}
+
+// Ours: an area ends where the previous picture is not filled.
+TEST(InfluenceMaskTest, AreasEndWithWhatIsFilled) {
+  ProcessedPicture previous = {{At(95, 45)}, {kPA}, kGrid, std::vector<float>(kGrid.Size(), 0)};
+  for (size_t cell = 0; cell < kGrid.Size(); ++cell) {
+    if (cell % 20 < 10) previous.filled[cell] = 0.9f;  // the left half
+  }
+  // Moved by 40 pixels: what lies right of pixel 60 was never filled.
+  const InfluenceMask mask = MakeInfluenceMask(kGrid, {At(55, 45)}, {{0, 0}}, previous, 21);
+  EXPECT_TRUE(Marked(mask, 5, 4) && Marked(mask, 3, 4) && Marked(mask, 5, 2));
+  EXPECT_FALSE(Marked(mask, 6, 4) || Marked(mask, 7, 4));
+  EXPECT_EQ(NumMarked(mask), 9);
+  previous.points[0] = At(15, 45);  // moved by 40 to the right: beyond the picture's left rim
+  EXPECT_EQ(NumMarked(MakeInfluenceMask(kGrid, {At(55, 45)}, {{0, 0}}, previous, 21)), 12);
 }
 
 // Paper 2.7: the matches of REA points erase, whatever the order of the matches.
@@ -54,7 +72,7 @@ TEST(InfluenceMaskTest, ReaMatchesErase) {
   const std::vector<SeaPoint> points = {At(55, 45), At(75, 45)};
   for (const FeatureMatches& matches :
        {FeatureMatches{{0, 0}, {1, 1}}, FeatureMatches{{1, 1}, {0, 0}}}) {
-    const InfluenceMask mask = MakeInfluenceMask(kGrid, points, matches, {kPA, kREA}, 21);
+    const InfluenceMask mask = MakeInfluenceMask(kGrid, points, matches, Labelled({kPA, kREA}), 21);
     // Of the 13 cells around (5, 4), those within 21 of (75, 45) are erased: columns 5 to 7.
     EXPECT_TRUE(Marked(mask, 3, 4) && Marked(mask, 4, 4) && Marked(mask, 4, 5));
     EXPECT_FALSE(Marked(mask, 7, 4) || Marked(mask, 6, 4) || Marked(mask, 5, 4) ||
@@ -81,7 +99,7 @@ TEST(InfluenceMaskTest, AgreesWithBruteForce) {
       previous.push_back(unit(generator) < 0.7 ? kPA : kREA);
       if (unit(generator) < 0.3) matches.push_back({39 - i, i});
     }
-    const InfluenceMask mask = MakeInfluenceMask(grid, points, matches, previous, radius);
+    const InfluenceMask mask = MakeInfluenceMask(grid, points, matches, Labelled(previous), radius);
     const auto near = [&](size_t cell, SeaPointLabel label) {
       return std::any_of(matches.begin(), matches.end(), [&](const FeatureMatch& match) {
         const SeaPoint& point = points[match.idx2];
@@ -101,8 +119,8 @@ TEST(InfluenceMaskTest, AgreesWithBruteForce) {
 }
 
 TEST(InfluenceMaskTest, NoMatchesNoOverlap) {
-  EXPECT_EQ(MakeInfluenceMask(kGrid, {At(55, 45)}, {}, {kPA}, 21).OverlapRate(), 0);
-  EXPECT_EQ(MakeInfluenceMask(CellGrid(), {}, {}, {}, 21).OverlapRate(), 0);
+  EXPECT_EQ(MakeInfluenceMask(kGrid, {At(55, 45)}, {}, Labelled({kPA}), 21).OverlapRate(), 0);
+  EXPECT_EQ(MakeInfluenceMask(CellGrid(), {}, {}, Labelled({}), 21).OverlapRate(), 0);
 }
 
 // OA in the mask, matched or not; REA near a match of an REA point; NA elsewhere.
@@ -115,7 +133,7 @@ TEST(LabelSeaPointsTest, ByWhereThePointsLie) {
                                         At(199.9, 99.9)};
   const FeatureMatches matches = {{0, 0}, {1, 2}};
   const std::vector<SeaPointLabel> previous = {kPA, kREA};
-  const InfluenceMask mask = MakeInfluenceMask(kGrid, points, matches, previous, 21);
+  const InfluenceMask mask = MakeInfluenceMask(kGrid, points, matches, Labelled(previous), 21);
   EXPECT_EQ(LabelSeaPoints(mask, points, matches, previous, 21),
             (std::vector<SeaPointLabel>{kOA, kOA, kREA, kREA, kNA, kNA}));
 }
@@ -124,7 +142,7 @@ TEST(LabelSeaPointsTest, ErasedCellsAreNoLongerOa) {
   const std::vector<SeaPoint> points = {At(55, 45), At(75, 45), At(66, 44), At(44, 45)};
   const FeatureMatches matches = {{0, 0}, {1, 1}};
   const std::vector<SeaPointLabel> previous = {kPA, kREA};
-  const InfluenceMask mask = MakeInfluenceMask(kGrid, points, matches, previous, 21);
+  const InfluenceMask mask = MakeInfluenceMask(kGrid, points, matches, Labelled(previous), 21);
   EXPECT_EQ(LabelSeaPoints(mask, points, matches, previous, 21),
             (std::vector<SeaPointLabel>{kREA, kREA, kREA, kOA}));
 }

@@ -124,8 +124,10 @@ TEST(RectificationTest, NothingToTurnLeavesThePictureAsItIs) {
   std::mt19937 generator(2);
   for (uint8_t& value : picture.data) value = static_cast<uint8_t>(generator());
   for (const int num_threads : {1, 3}) {
+    BlockMask all(window);
+    all.Want(0, 0, window.width, window.height);
     const RectPicture rect =
-        RectMap(*geometry, false, window, num_threads).Rectify(picture, num_threads);
+        RectMap(*geometry, false, window, num_threads).Rectify(picture, all, num_threads);
     ASSERT_EQ(rect.gray.width, window.width);
     ASSERT_EQ(rect.gray.height, window.height);
     for (int j = 0; j < rect.gray.height; ++j) {
