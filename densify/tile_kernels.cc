@@ -169,12 +169,14 @@ void WarpRow(const Pair& pair, const Frame& frame, int row, const float* predict
   }
   const uint8_t* source = gray.Row(y);
   const VF origin = hn::Set(df, static_cast<float>(frame.left_column + pair.column_shift));
-  const VF lowest = hn::Set(df, 1.0f), highest = hn::Set(df, static_cast<float>(gray.width - 3));
+  // Positions with two pixels on either side: [lowest, end).
+  const VF lowest = hn::Set(df, 1.0f), end = hn::Set(df, static_cast<float>(gray.width - 2));
+  const VF highest = hn::Sub(end, hn::Set(df, 1.0f / kPhases));
   const VF phases = hn::Set(df, static_cast<float>(kPhases));
   for (int c = 0; c < frame.columns; c += static_cast<int>(hn::Lanes(df))) {
     const VF column = hn::Add(hn::Iota(df, static_cast<float>(c)), origin);
-    VF at = hn::Sub(column, hn::LoadU(df, prediction + c));
-    at = hn::Min(hn::Max(at, lowest), highest);
+    const VF wanted = hn::Sub(column, hn::LoadU(df, prediction + c));
+    const VF at = hn::Min(hn::Max(wanted, lowest), highest);
     const VI fixed = hn::ConvertTo(di, hn::Mul(at, phases));
     const VI first = hn::Sub(hn::ShiftRight<kPhaseBits>(fixed), hn::Set(di, 1));
     const VI phase = hn::And(fixed, hn::Set(di, kPhases - 1));
@@ -184,7 +186,8 @@ void WarpRow(const Pair& pair, const Frame& frame, int row, const float* predict
                        hn::Add(Tap(pixels, weights, 2), Tap(pixels, weights, 3)));
     value = hn::ShiftRight<6>(hn::Add(value, hn::Set(di, 32)));
     value = hn::Min(hn::Max(value, hn::Set(di, 1)), hn::Set(di, 255));
-    value = hn::IfThenZeroElse(HasZeroByte(pixels), value);
+    const auto beyond = hn::RebindMask(di, hn::Or(hn::Lt(wanted, lowest), hn::Ge(wanted, end)));
+    value = hn::IfThenZeroElse(hn::Or(HasZeroByte(pixels), beyond), value);
     hn::StoreU(hn::DemoteTo(d16, hn::Sub(value, hn::Set(di, 128))), d16, to + c);
   }
 }
