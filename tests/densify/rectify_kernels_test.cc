@@ -116,10 +116,12 @@ TEST(RectifyKernelsTest, RectifyIsBilinearAtTheMapsPositions) {
   for (uint8_t& value : source.data) value = static_cast<uint8_t>(generator());
   const RectWindow window = WindowOfPicture(*geometry, false);
   const RectMap map(*geometry, false, window, 2);
-  const RectPicture picture = map.Rectify(source, 1);
+  BlockMask all(window);
+  all.Want(0, 0, window.width, window.height);
+  const RectPicture picture = map.Rectify(source, all, 1);
   ForEachVectorTarget([&] {
     for (const int num_threads : {1, 3}) {
-      EXPECT_EQ(map.Rectify(source, num_threads).gray.data, picture.gray.data);
+      EXPECT_EQ(map.Rectify(source, all, num_threads).gray.data, picture.gray.data);
     }
   });
   int num_inside = 0, num_wrong_rim = 0;
