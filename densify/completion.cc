@@ -13,9 +13,9 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr size_t kMaxCovisible = 12;
-constexpr double kMinGain = 0.003;  // share of a picture's cells that makes a pair worth it
+constexpr double kMinGain = 0.01;  // share of a picture's cells that makes a pair worth it
 constexpr double kGainTriedOnce = 0.25;
-constexpr float kMinFilledCell = 0.75f;  // share of its samples that makes a cell covered
+constexpr float kMinFilledCell = 0.9f;  // share of its samples that makes a cell covered
 constexpr double kMinParallaxDeg = 2;
 constexpr double kMaxParallaxDeg = 40;
 constexpr double kRimMargin = 0.01;  // of the partner's sides: no window fits nearer

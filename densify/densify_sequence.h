@@ -24,6 +24,7 @@ class PictureSource {
   // Throws Error for a picture that is missing, unreadable or of another size than its camera.
   // Called from several threads at once; the others are not.
   virtual ColorImage ReadColor(int image_idx) = 0;
+  virtual GrayImage ReadGray(int image_idx);  // unless overridden, of the colours
   // nullopt: none are stored. Throws Error for damaged ones.
   virtual std::optional<Features> ReadSeaPoints(int image_idx) = 0;
   virtual Features FindSeaPoints(const GrayImage& picture) = 0;

@@ -11,7 +11,7 @@ namespace colmap_seapoint {
 
 namespace {
 
-constexpr float kMinFilledCell = 0.75f;
+constexpr float kMinFilledCell = 0.9f;
 
 const float* RowOf(const std::vector<float>& values, const SampleGrid& grid, int b) {
   return values.data() + static_cast<size_t>(b) * static_cast<size_t>(grid.width);

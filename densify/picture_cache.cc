@@ -3,45 +3,39 @@
 #include <algorithm>
 
 #include "colmap_seapoint/base/error.h"
+#include "densify/gray_kernels.h"
 
 namespace colmap_seapoint {
 
-namespace {
-
-GrayImage ToGray(const ColorImage& color) {
-  GrayImage gray(color.width, color.height);
-  const uint8_t* source = color.data.data();
-  for (uint8_t& value : gray.data) {
-    value = static_cast<uint8_t>((77 * source[0] + 150 * source[1] + 29 * source[2] + 128) >> 8);
-    source += 3;
-  }
-  return gray;
-}
-
-}  // namespace
-
-PictureCache::PendingPicture PictureCache::Start(int image_idx) {
+PictureCache::PendingPicture PictureCache::Start(int image_idx, bool with_color) {
   for (auto entry = pictures_.begin(); entry != pictures_.end(); ++entry) {
-    if (entry->first != image_idx) continue;
+    if (entry->image_idx != image_idx) continue;
+    if (with_color && !entry->with_color) {
+      pictures_.erase(entry);
+      break;
+    }
     std::rotate(entry, entry + 1, pictures_.end());
-    return pictures_.back().second;
+    return pictures_.back().pending;
   }
   if (pictures_.size() >= kMaxPictures) pictures_.pop_front();
-  PendingPicture pending = std::async(std::launch::async, [source = source_, image_idx] {
+  PendingPicture pending = std::async(std::launch::async, [source = source_, image_idx,
+                                                           with_color] {
                              auto picture = std::make_shared<Picture>();
-                             picture->color = source->ReadColor(image_idx);
-                             picture->gray = ToGray(picture->color);
+                             if (with_color) {
+                               picture->color = source->ReadColor(image_idx);
+                               picture->gray = GrayOfColor(picture->color);
+                             } else {
+                               picture->gray = source->ReadGray(image_idx);
+                             }
                              return std::shared_ptr<const Picture>(picture);
                            }).share();
-  pictures_.emplace_back(image_idx, pending);
+  pictures_.push_back({image_idx, with_color, pending});
   return pending;
 }
 
-void PictureCache::Prefetch(int image_idx) { Start(image_idx); }
-
-std::shared_ptr<const Picture> PictureCache::Get(int image_idx) {
+std::shared_ptr<const Picture> PictureCache::Wait(int image_idx, bool with_color) {
   try {
-    return Start(image_idx).get();
+    return Start(image_idx, with_color).get();
   } catch (const Error& error) {
     LeaveOut(image_idx, error.Finding());
     return nullptr;
@@ -55,7 +49,7 @@ Features PictureCache::ObtainSeaPoints(int image_idx) {
     LeaveOut(image_idx, error.Finding());
     return {};
   }
-  const auto picture = Get(image_idx);
+  const auto picture = GetGray(image_idx);
   return picture ? source_->FindSeaPoints(picture->gray) : Features();
 }
 

@@ -16,23 +16,26 @@
 namespace colmap_seapoint {
 
 struct Picture {
-  ColorImage color;
-  GrayImage gray;  // 0.299 red + 0.587 green + 0.114 blue
+  ColorImage color;  // empty when only grey was asked for
+  GrayImage gray;    // 0.299 red + 0.587 green + 0.114 blue
 };
 
 class PictureCache {
  public:
   explicit PictureCache(PictureSource* source) : source_(source) {}
 
-  // nullptr when the picture cannot be read: the reason goes to LeftOut(), once.
-  std::shared_ptr<const Picture> Get(int image_idx);
+  // nullptr when the picture cannot be read: the reason goes to LeftOut(), once. Of the second
+  // picture of a pair only the grey values are needed: decoding them costs half.
+  std::shared_ptr<const Picture> Get(int image_idx) { return Wait(image_idx, true); }
+  std::shared_ptr<const Picture> GetGray(int image_idx) { return Wait(image_idx, false); }
   // Empty features when they cannot be had, and the reason likewise. Where none are stored, they
   // are found in the picture, which is decoded once for that and for densification.
   std::shared_ptr<const Features> GetSeaPoints(int image_idx);
   // idx1 in image_idx1's SeaPoints, idx2 in image_idx2's.
   std::shared_ptr<const FeatureMatches> GetMatches(int image_idx1, int image_idx2);
   // Starts reading in the background, if it is not there or under way.
-  void Prefetch(int image_idx);
+  void Prefetch(int image_idx) { Start(image_idx, true); }
+  void PrefetchGray(int image_idx) { Start(image_idx, false); }
 
   const std::vector<LeftOutPicture>& LeftOut() const { return left_out_; }
 
@@ -42,13 +45,20 @@ class PictureCache {
   static constexpr size_t kMaxFeatures = 32;
   static constexpr size_t kMaxMatches = 32;
 
-  PendingPicture Start(int image_idx);
+  struct Entry {
+    int image_idx;
+    bool with_color;
+    PendingPicture pending;
+  };
+
+  PendingPicture Start(int image_idx, bool with_color);
+  std::shared_ptr<const Picture> Wait(int image_idx, bool with_color);
   Features ObtainSeaPoints(int image_idx);
   void LeaveOut(int image_idx, const std::string& reason);
 
   PictureSource* const source_;
-  // By image_idx, least recently used first.
-  std::deque<std::pair<int, PendingPicture>> pictures_;
+  // Least recently used first.
+  std::deque<Entry> pictures_;
   std::deque<std::pair<int, std::shared_ptr<const Features>>> features_;
   std::deque<std::pair<std::pair<int, int>, std::shared_ptr<const FeatureMatches>>> matches_;
   std::vector<LeftOutPicture> left_out_;

@@ -73,17 +73,17 @@ std::shared_ptr<const FeatureMatches> SequenceState::MatchesOf(int position1, in
 int SequenceState::SelectSecond(int first) {
   PairReport report = NewReport(first, -1, "sequence");
   const int right = RightOf(first);
-  if (right >= 0) cache_.Prefetch(ImageIdxAt(right));
+  if (right >= 0) cache_.PrefetchGray(ImageIdxAt(right));
   if (!cache_.Get(ImageIdxAt(first))) {
     report.skipped = "the picture cannot be read";
     report_.pairs.push_back(report);
     return NumPictures();
   }
-  if (right >= 0 && cache_.Get(ImageIdxAt(right))) return right;
+  if (right >= 0 && cache_.GetGray(ImageIdxAt(right))) return right;
   report.skipped = "no following picture matches it";
   const int end = std::min(num_track_, first + 1 + kMaxSecondTries);
   for (int second = first + 1; second < end; ++second) {
-    if (!cache_.Get(ImageIdxAt(second))) continue;
+    if (!cache_.GetGray(ImageIdxAt(second))) continue;
     const auto matches = MatchesOf(first, second);
     if (static_cast<int>(matches->size()) < options_.min_num_seeds) continue;
     const double motion = MeanMotion(SeaPointsAt(first)->points, SeaPointsAt(second)->points,
@@ -201,7 +201,8 @@ bool SequenceState::RunPair(int first, int second, const Overlap& overlap,
                             std::vector<PixelPair> seeds, PairReport* report, PairResult* result) {
   const Timer timer;
   densified_pairs_.insert(Ordered(first, second));
-  const auto picture1 = cache_.Get(ImageIdxAt(first)), picture2 = cache_.Get(ImageIdxAt(second));
+  const auto picture1 = cache_.Get(ImageIdxAt(first));
+  const auto picture2 = cache_.GetGray(ImageIdxAt(second));
   if (!picture1 || !picture2) {
     report->skipped = "a picture cannot be read";
     return false;
@@ -270,10 +271,9 @@ void SequenceState::ShowPair(int first, int second, const Overlap& overlap,
 }
 
 void SequenceState::DensifyNewAreas(int first, int second) {
-  // Decoded while this pair is densified: one of them will most often start the next pair.
-  for (int ahead = 1; ahead <= 2 && second + ahead < num_track_; ++ahead) {
-    cache_.Prefetch(ImageIdxAt(second + ahead));
-  }
+  // Decoded while this pair is densified: most often they are the next pair.
+  if (second + 1 < num_track_) cache_.Prefetch(ImageIdxAt(second + 1));
+  if (second + 2 < num_track_) cache_.PrefetchGray(ImageIdxAt(second + 2));
   PairReport report = NewReport(first, second, "sequence");
   const Overlap overlap = AssessOverlap(first);
   for (const SeaPointLabel label : overlap.labels) {

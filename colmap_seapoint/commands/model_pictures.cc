@@ -56,7 +56,14 @@ std::string ModelPictures::Check(int image_idx) const {
 }
 
 ColorImage ModelPictures::ReadColor(int image_idx) {
-  ColorImage picture = ReadColorImage(PathOf(image_idx));
+  return WithCheckedSize(image_idx, ReadColorImage(PathOf(image_idx)));
+}
+
+GrayImage ModelPictures::ReadGray(int image_idx) {
+  return WithCheckedSize(image_idx, ReadGrayImage(PathOf(image_idx)));
+}
+
+Image<uint8_t> ModelPictures::WithCheckedSize(int image_idx, Image<uint8_t> picture) const {
   const std::string problem = CheckSize(image_idx, picture.width, picture.height);
   if (problem.empty()) return picture;
   throw Error(PathOf(image_idx).string(), problem,

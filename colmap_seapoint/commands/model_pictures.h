@@ -31,6 +31,7 @@ class ModelPictures : public PictureSource {
   int NumInDatabase() const { return num_in_database_; }
 
   ColorImage ReadColor(int image_idx) override;
+  GrayImage ReadGray(int image_idx) override;
   std::optional<Features> ReadSeaPoints(int image_idx) override;
   Features FindSeaPoints(const GrayImage& picture) override;
   // Damaged matches are as good as none; a warning says so.
@@ -40,6 +41,8 @@ class ModelPictures : public PictureSource {
  private:
   const PosedImage& ImageAt(int image_idx) const;
   std::filesystem::path PathOf(int image_idx) const;
+  // The picture; throws Error when it is of another size than its camera.
+  Image<uint8_t> WithCheckedSize(int image_idx, Image<uint8_t> picture) const;
   // "" or the reason.
   std::string CheckSize(int image_idx, int width, int height) const;
   // Whether the database has SeaPoints of ours that ReadSeaPoints can return.

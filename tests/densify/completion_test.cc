@@ -166,10 +166,10 @@ TEST(SelectCompletionPartnerTest, NothingUncoveredNoPartner) {
   const std::vector<double> range = TrueRanges(view);
   ViewCoverage full{kGrid, std::vector<float>(kGrid.Size(), 2.f)};
   EXPECT_EQ(Partner(view, full, range, {{1, ViewAbove(0.2)}}), -1);
-  // A few open cells are not worth a pair: 0.3 % of 1200 are 3.6.
-  for (size_t cell = 600; cell < 603; ++cell) full.range[cell] = 0;
+  // A few open cells are not worth a pair: 1 % of 1200 are 12.
+  for (size_t cell = 600; cell < 612; ++cell) full.range[cell] = 0;
   EXPECT_EQ(Partner(view, full, range, {{1, ViewAbove(0.2)}}), -1);
-  for (size_t cell = 600; cell < 610; ++cell) full.range[cell] = 0;
+  for (size_t cell = 600; cell < 620; ++cell) full.range[cell] = 0;
   EXPECT_EQ(Partner(view, full, range, {{1, ViewAbove(0.2)}}), 1);
 }
 

@@ -115,8 +115,8 @@ TEST(ProjectCoverageTest, OfARealPair) {
                                                 scene.view1.cam_from_world, input.cells);
   int num_missing = 0, num_filled = 0, num_false = 0;
   for (size_t cell = 0; cell < input.cells.Size(); ++cell) {
-    num_filled += result.filled[cell] >= 0.75f;
-    num_missing += result.filled[cell] >= 0.75f && coverage.range[cell] == 0;
+    num_filled += result.filled[cell] >= 0.9f;
+    num_missing += result.filled[cell] >= 0.9f && coverage.range[cell] == 0;
     num_false += result.filled[cell] == 0 && coverage.range[cell] > 0;
   }
   EXPECT_LT(num_missing, 0.02 * num_filled);

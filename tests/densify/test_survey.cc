@@ -95,6 +95,13 @@ ColorImage TestSurvey::ReadColor(int image_idx) {
   return pictures_[static_cast<size_t>(image_idx)];
 }
 
+GrayImage TestSurvey::ReadGray(int image_idx) {
+  if (image_idx == unreadable_) throw Error("a.jpg", "is cut short", "copy it again");
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++num_decoded_gray[image_idx];
+  return GrayOf(pictures_[static_cast<size_t>(image_idx)]);
+}
+
 std::optional<Features> TestSurvey::ReadSeaPoints(int image_idx) {
   if (!stores_seapoints) return std::nullopt;
   return features_[static_cast<size_t>(image_idx)];
