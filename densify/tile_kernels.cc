@@ -177,7 +177,7 @@ void WarpRow(const Pair& pair, const Frame& frame, int row, const float* predict
     const VF column = hn::Add(hn::Iota(df, static_cast<float>(c)), origin);
     const VF wanted = hn::Sub(column, hn::LoadU(df, prediction + c));
     const VF at = hn::Min(hn::Max(wanted, lowest), highest);
-    const VI fixed = hn::ConvertTo(di, hn::Mul(at, phases));
+    const VI fixed = hn::ConvertTo(di, hn::Add(hn::Mul(at, phases), hn::Set(df, 0.5f)));
     const VI first = hn::Sub(hn::ShiftRight<kPhaseBits>(fixed), hn::Set(di, 1));
     const VI phase = hn::And(fixed, hn::Set(di, kPhases - 1));
     const VI pixels = hn::GatherOffset(di, reinterpret_cast<const int32_t*>(source), first);

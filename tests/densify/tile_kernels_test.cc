@@ -63,14 +63,16 @@ class Oracle {
     return pair_.gray1->At(column, row);
   }
 
-  // Picture 2 where the prediction puts a pixel of the tile: Catmull-Rom at 64ths of a pixel, weights
-  // in 64ths.
+  // Picture 2 where the prediction puts a pixel of the tile: Catmull-Rom at the nearest 64th of a
+  // pixel, weights in 64ths.
   int Warped(int x, int y) const {
     const int row = region_.tile_y + y + pair_.row_shift;
     const float column = static_cast<float>(region_.tile_x + x + pair_.column_shift);
     const float at = column - tile::PredictedAt(prediction_, x, y);
-    const int whole = static_cast<int>(std::floor(at));
-    const int phase = static_cast<int>(std::floor(64 * (at - static_cast<float>(whole))));
+    if (!(at >= 1 && at < static_cast<float>(pair_.gray2->width - 2))) return kOutside;
+    const int nearest = static_cast<int>(std::floor(64 * at + 0.5f));
+    const int fixed = std::min(nearest, 64 * (pair_.gray2->width - 2) - 1);
+    const int whole = fixed / 64, phase = fixed % 64;
     const double t = phase / 64.0;
     const std::array<double, 4> exact = {
         -0.5 * t + t * t - 0.5 * t * t * t, 1 - 2.5 * t * t + 1.5 * t * t * t,
