@@ -298,12 +298,13 @@ class Refinement {
         const size_t sample =
             static_cast<size_t>(b) * static_cast<size_t>(grid.width) + static_cast<size_t>(a);
         const bool held = result_.disparity[sample] > 0;
-        if (score[at] < min_zncc || score[at] <= result_.score[sample] ||
-            (held && window != options_.window_size)) {
+        const float disparity = tile::PredictedAt(surface, x, y) + residual[at];
+        if (score[at] <= 0 || score[at] < min_zncc || disparity <= 0 ||
+            score[at] <= result_.score[sample] || (held && window != options_.window_size)) {
           any_empty = any_empty || !held;
           continue;
         }
-        result_.disparity[sample] = tile::PredictedAt(surface, x, y) + residual[at];
+        result_.disparity[sample] = disparity;
         result_.score[sample] = score[at];
       }
     }
