@@ -52,7 +52,12 @@ void RemoveDoubleClaims(int b, PartialDisparity* partial, std::vector<int>* owne
       holder = a;
       continue;
     }
-    const bool same_surface = std::abs(disparity[a] - disparity[holder]) <= tolerance;
+    const auto on_surface_of = [&](int other) {
+      return std::abs(disparity[a] - disparity[other]) <= tolerance;
+    };
+    // On a steep surface many samples in a row fall on one place: each agrees with the one before.
+    const bool continues = disparity[a - 1] > 0 && place(a - 1) == place(a) && on_surface_of(a - 1);
+    const bool same_surface = continues || on_surface_of(holder);
     const int better = score[a] > score[holder] ? a : holder;
     if (!same_surface) Remove(row + static_cast<size_t>(better == a ? holder : a), partial);
     holder = better;
