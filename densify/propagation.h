@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -32,7 +33,7 @@ struct SampleGrid {
   int PixelY(int b) const { return b * step + step / 2; }
   double RectX(int a) const { return window.x0 + PixelX(a) + 0.5; }
   double RectY(int b) const { return window.y0 + PixelY(b) + 0.5; }
-  // The node (see kNodeStep) whose square holds a sample.
+  // The node (see kNodeStep) whose square holds a sample, the nearest for one beyond the window.
   size_t NodeOf(int a, int b) const;
   // The first sample at or behind a window pixel.
   int FirstFrom(int pixel) const { return (pixel - step / 2 + step - 1) / step; }
@@ -43,8 +44,9 @@ inline constexpr int kNodeStep = 4;
 
 inline size_t SampleGrid::NodeOf(int a, int b) const {
   const int nodes_across = (window.width + kNodeStep - 1) / kNodeStep;
-  return static_cast<size_t>(PixelY(b) / kNodeStep) * static_cast<size_t>(nodes_across) +
-         static_cast<size_t>(PixelX(a) / kNodeStep);
+  const int x = std::min(PixelX(a), window.width - 1), y = std::min(PixelY(b), window.height - 1);
+  return static_cast<size_t>(y / kNodeStep) * static_cast<size_t>(nodes_across) +
+         static_cast<size_t>(x / kNodeStep);
 }
 
 // Where picture 1 may be matched, kept at nodes. kClosed: not at all. kOpen: yes. A positive value:

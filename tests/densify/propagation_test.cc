@@ -121,6 +121,27 @@ TEST(PropagationTest, GatesHold) {
   EXPECT_TRUE(Gate::Admits(100, 91.9f));
 }
 
+// Windows that the samples, or the nodes, do not fill up.
+TEST(SampleGridTest, EverySampleHasItsNode) {
+  for (int step = 1; step <= 20; ++step) {
+    for (int width = 1; width <= 50; ++width) {
+      const int height = 1 + width * 7 % 30;
+      const SampleGrid grid({0, 0, width, height}, step);
+      const SampleGrid nodes({0, 0, width, height}, kNodeStep);
+      for (int b = 0; b < grid.height; ++b) {
+        for (int a = 0; a < grid.width; ++a) {
+          const size_t node = grid.NodeOf(a, b);
+          ASSERT_LT(node, nodes.Size()) << step << " " << width;
+          const int u = static_cast<int>(node) % nodes.width;
+          const int v = static_cast<int>(node) / nodes.width;
+          ASSERT_EQ(u, std::min(grid.PixelX(a) / kNodeStep, nodes.width - 1));
+          ASSERT_EQ(v, std::min(grid.PixelY(b) / kNodeStep, nodes.height - 1));
+        }
+      }
+    }
+  }
+}
+
 TEST(PropagationTest, SeedsThatDoNotSpreadAreCounted) {
   const PartialDisparity partial =
       Wall().Grow({SeedAt(80, 30, kDisparity + 6), SeedAt(60, 30, kDisparity + 6), SeedAt(-50, 30, 10)}, 10);
