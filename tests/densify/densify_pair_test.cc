@@ -54,6 +54,19 @@ TEST(DensifyPairTest, Plane) {
   }
 }
 
+TEST(DensifyPairTest, EveryCameraModel) {
+  for (const CameraModel model : AllCameraModels()) {
+    SCOPED_TRACE(FindCameraModel(static_cast<int>(model))->name);
+    const PairScene scene = SceneOf(SlantedWorld(kDepth, 10), model);
+    const PartialDensificationOptions options;
+    const PairResult result = DensifyPair(scene.Input(options), options, 2);
+    EXPECT_EQ(result.failure, "");
+    const double gsd = scene.Gsd(kDepth);
+    EXPECT_GE(MeasureAccuracy(scene, result.cloud, gsd).one_gsd, 0.97);
+    EXPECT_GE(MeasureCoverage(scene, result.cloud, gsd), 0.97);
+  }
+}
+
 TEST(DensifyPairTest, SlantedPlane) {
   for (const double angle_deg : {30.0, -30.0}) {
     const PairScene scene = SceneOf(SlantedWorld(kDepth, angle_deg));

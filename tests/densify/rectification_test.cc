@@ -15,11 +15,11 @@ std::optional<PairGeometry> GeometryOf(const Viewpoint& view1, const Viewpoint& 
   return MakePairGeometry(view1.camera, view1.cam_from_world, view2.camera, view2.cam_from_world);
 }
 
-class AllCamerasTest : public testing::TestWithParam<int> {
+class AllCamerasTest : public testing::TestWithParam<CameraModel> {
  protected:
-  Viewpoint view1_ = StandAt(MildCamera(static_cast<CameraModel>(GetParam()), 520, 640, 480),
+  Viewpoint view1_ = StandAt(MildCamera(GetParam(), 520, 640, 480),
                              {0.1, -0.2, 0.05}, {4, -5, 20});
-  Viewpoint view2_ = StandAt(MildCamera(static_cast<CameraModel>(GetParam()), 560, 600, 500),
+  Viewpoint view2_ = StandAt(MildCamera(GetParam(), 560, 600, 500),
                              {0.5, 0.1, -0.02}, {-6, 3, 11});
 };
 
@@ -76,7 +76,7 @@ TEST_P(AllCamerasTest, MapAgreesWithTheProjection) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, AllCamerasTest, testing::Range(0, 11));
+INSTANTIATE_TEST_SUITE_P(Models, AllCamerasTest, testing::ValuesIn(AllCameraModels()));
 
 Viewpoint Ahead(const Eigen::Vector3d& center, const Eigen::Vector3d& turn_deg = {0, 0, 0}) {
   return StandAt(MakeCamera(CameraModel::kPinhole, 500, 640, 480), center, turn_deg);

@@ -65,6 +65,14 @@ Viewpoint StandAt(const Camera& camera, const Eigen::Vector3d& center,
   return {camera, {rotation, -(rotation * center)}};
 }
 
+std::vector<CameraModel> AllCameraModels() {
+  std::vector<CameraModel> models;
+  for (int id = 0; id < 100; ++id) {
+    if (const CameraModelInfo* info = FindCameraModel(id)) models.push_back(info->model);
+  }
+  return models;
+}
+
 Camera MildCamera(CameraModel model, double focal, int width, int height) {
   Camera camera = MakeCamera(model, focal, width, height);
   const size_t first = FindCameraModel(static_cast<int>(model))->has_single_focal ? 3 : 4;
