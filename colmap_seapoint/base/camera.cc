@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "colmap_seapoint/base/error.h"
+
 namespace colmap_seapoint {
 namespace {
 
@@ -236,6 +238,33 @@ std::optional<Eigen::Vector2d> Camera::CamFromImg(const Eigen::Vector2d& pixel) 
   if (theta > kHalfPi - 1e-9) return std::nullopt;
   if (theta < std::numeric_limits<double>::epsilon()) return w;
   return Eigen::Vector2d(*w * (std::tan(theta) / theta));
+}
+
+bool AreScaledSizes(int width1, int height1, int width2, int height2) {
+  if (std::min({width1, height1, width2, height2}) <= 0) return false;
+  if (width1 == width2 || height1 == height2) return width1 == width2 && height1 == height2;
+  // Each side of the smaller picture is within one pixel of k times that of the larger one.
+  const double width = std::max(width1, width2), height = std::max(height1, height2);
+  if ((width1 < width2) != (height1 < height2)) return false;
+  const double k_of_width = std::min(width1, width2) / width;
+  const double k_of_height = std::min(height1, height2) / height;
+  return std::abs(k_of_width - k_of_height) <= 1 / width + 1 / height;
+}
+
+Camera ScaledCamera(const Camera& camera, int width, int height) {
+  SEAPOINT_CHECK(AreScaledSizes(camera.width, camera.height, width, height));
+  const double x_scale = static_cast<double>(width) / camera.width;
+  const double y_scale = static_cast<double>(height) / camera.height;
+  Camera scaled = camera;
+  scaled.width = width;
+  scaled.height = height;
+  const bool single = HasSingleFocal(camera.model);
+  scaled.params[0] *= single ? 0.5 * (x_scale + y_scale) : x_scale;
+  if (!single) scaled.params[1] *= y_scale;
+  const size_t principal = single ? 1 : 2;
+  scaled.params[principal] *= x_scale;
+  scaled.params[principal + 1] *= y_scale;
+  return scaled;
 }
 
 Camera MakeCamera(CameraModel model, double focal, int width, int height) {

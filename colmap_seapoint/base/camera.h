@@ -26,7 +26,7 @@ enum class CameraModel : int {
 
 struct CameraModelInfo {
   CameraModel model;
-  const char* name;      // COLMAP's, e.g. "OPENCV"
+  const char* name;  // COLMAP's, e.g. "OPENCV"
   int num_params;
   bool has_single_focal;  // params[0] = f, (cx, cy) = params[1..2]; else fx, fy, cx, cy
 };
@@ -64,6 +64,17 @@ struct Camera {
     return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() <= width && pixel.y() <= height;
   }
 };
+
+// Whether pictures of these two sizes can show the same in two resolutions (paper 4, hybrid
+// resolution): one factor takes both sides of one to the other's, whole pixels apart for rounding.
+// True for equal sizes; false where only one side differs.
+bool AreScaledSizes(int width1, int height1, int width2, int height2);
+
+// The same camera for its pictures in another resolution, width x height pixels: what was at (x, y)
+// is at (k x, k y), since the first pixel covers [0, 1). Distortion parameters stay. Needs
+// AreScaledSizes; a single focal length takes the mean of the two sides' factors, which rounding
+// keeps apart.
+Camera ScaledCamera(const Camera& camera, int width, int height);
 
 // A camera with COLMAP's initial guess: principal point at the centre, no distortion.
 Camera MakeCamera(CameraModel model, double focal, int width, int height);

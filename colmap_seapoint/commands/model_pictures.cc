@@ -20,11 +20,20 @@ ModelPictures::ModelPictures(const SparseModel& model, const std::filesystem::pa
       has_stored_(model.images.size()) {
   if (database_path.empty()) return;
   database_.emplace(database_path, ColmapDatabase::Mode::kReadOnly);
-  for (const DatabaseImage& image : database_->ReadImages()) {
-    if (database_->FeaturesFingerprint(image.image_id)) database_ids_[image.name] = image.image_id;
-  }
+  const std::map<uint32_t, Camera> cameras = database_->ReadCameras();
+  std::unordered_map<std::string, const Camera*> camera_of;  // the model's
   for (const PosedImage& image : model_.images) {
-    num_in_database_ += static_cast<int>(database_ids_.count(image.name));
+    camera_of[image.name] = &model_.cameras.at(image.camera_id);
+  }
+  for (const DatabaseImage& image : database_->ReadImages()) {
+    const auto posed = camera_of.find(image.name);
+    if (posed == camera_of.end() || !database_->FeaturesFingerprint(image.image_id)) continue;
+    const auto found_in = cameras.find(image.camera_id);
+    const Camera& to = *posed->second;
+    const Camera& from = found_in == cameras.end() ? to : found_in->second;
+    if (!AreScaledSizes(from.width, from.height, to.width, to.height)) continue;
+    in_database_[image.name] = {image.image_id, static_cast<float>(to.width) / from.width,
+                                static_cast<float>(to.height) / from.height};
   }
 }
 
@@ -43,7 +52,7 @@ std::string ModelPictures::CheckSize(int image_idx, int width, int height) const
   if (width == camera.width && height == camera.height) return "";
   return "is " + std::to_string(width) + "x" + std::to_string(height) +
          " but its camera in the model is " + std::to_string(camera.width) + "x" +
-         std::to_string(camera.height);
+         std::to_string(camera.height) + ", of other proportions";
 }
 
 std::string ModelPictures::Check(int image_idx) const {
@@ -67,14 +76,21 @@ Image<uint8_t> ModelPictures::WithCheckedSize(int image_idx, Image<uint8_t> pict
   const std::string problem = CheckSize(image_idx, picture.width, picture.height);
   if (problem.empty()) return picture;
   throw Error(PathOf(image_idx).string(), problem,
-              "give the pictures that the model was made from");
+              "give the pictures that the model was made from, reduced or in full");
 }
 
 std::optional<Features> ModelPictures::ReadSeaPoints(int image_idx) {
-  const auto id = database_ids_.find(ImageAt(image_idx).name);
-  if (id == database_ids_.end()) return std::nullopt;
-  auto features = database_->ReadFeatures(id->second);
+  const auto stored = in_database_.find(ImageAt(image_idx).name);
+  if (stored == in_database_.end()) return std::nullopt;
+  const auto [id, x_scale, y_scale] = stored->second;
+  auto features = database_->ReadFeatures(id);
   has_stored_.at(static_cast<size_t>(image_idx)) = features.has_value();
+  if (!features || (x_scale == 1 && y_scale == 1)) return features;
+  for (SeaPoint& point : features->points) {
+    point.x *= x_scale;
+    point.y *= y_scale;
+    point.scale *= x_scale;
+  }
   return features;
 }
 
@@ -91,8 +107,8 @@ bool ModelPictures::HasStoredSeaPoints(int image_idx) {
 std::optional<FeatureMatches> ModelPictures::ReadMatches(int image_idx1, int image_idx2) {
   try {
     if (!HasStoredSeaPoints(image_idx1) || !HasStoredSeaPoints(image_idx2)) return std::nullopt;
-    const uint32_t id1 = database_ids_.at(ImageAt(image_idx1).name);
-    const uint32_t id2 = database_ids_.at(ImageAt(image_idx2).name);
+    const uint32_t id1 = in_database_.at(ImageAt(image_idx1).name).image_id;
+    const uint32_t id2 = in_database_.at(ImageAt(image_idx2).name).image_id;
     const ImagePair pair = std::minmax(id1, id2);
     const bool verified = database_->HasMatches(pair);
     FeatureMatches matches =

@@ -17,8 +17,10 @@
 namespace colmap_seapoint {
 
 // `model` outlives it. SeaPoints come from the database, by image name, where it is given and has
-// ours. Matches are the verified ones of the database (the raw ones of a pair that nothing has
-// verified) where it has both pictures' SeaPoints and the pair.
+// ours; those found in a reduced (or larger) picture are scaled to the model's camera (paper 4,
+// hybrid resolution), those of a picture of other proportions not used. Matches are the verified
+// ones of the database (the raw ones of a pair that nothing has verified) where it has both
+// pictures' SeaPoints and the pair.
 class ModelPictures : public PictureSource {
  public:
   ModelPictures(const SparseModel& model, const std::filesystem::path& image_path,
@@ -28,7 +30,7 @@ class ModelPictures : public PictureSource {
   // "" when the picture's header is readable and of its camera's size; else the reason. Cheap.
   std::string Check(int image_idx) const;
   // How many of the model's pictures have SeaPoints in the database.
-  int NumInDatabase() const { return num_in_database_; }
+  int NumInDatabase() const { return static_cast<int>(in_database_.size()); }
 
   ColorImage ReadColor(int image_idx) override;
   GrayImage ReadGray(int image_idx) override;
@@ -39,6 +41,11 @@ class ModelPictures : public PictureSource {
   FeatureMatches Match(const Features& features1, const Features& features2) override;
 
  private:
+  struct StoredSeaPoints {
+    uint32_t image_id;
+    float x_scale, y_scale;  // from the picture they were found in to the model's
+  };
+
   const PosedImage& ImageAt(int image_idx) const;
   std::filesystem::path PathOf(int image_idx) const;
   // The picture; throws Error when it is of another size than its camera.
@@ -53,9 +60,8 @@ class ModelPictures : public PictureSource {
   SeaPointExtractionOptions extraction_;
   SeaPointMatchingOptions matching_;
   std::optional<ColmapDatabase> database_;
-  std::unordered_map<std::string, uint32_t> database_ids_;  // of images with SeaPoints
-  std::vector<std::optional<bool>> has_stored_;             // by image_idx, once known
-  int num_in_database_ = 0;
+  std::unordered_map<std::string, StoredSeaPoints> in_database_;  // the model's images, by name
+  std::vector<std::optional<bool>> has_stored_;                   // by image_idx, once known
 };
 
 }  // namespace colmap_seapoint

@@ -11,6 +11,7 @@
 #include "colmap_seapoint/commands/debug_figures.h"
 #include "colmap_seapoint/commands/model_pictures.h"
 #include "colmap_seapoint/commands/pairs_csv.h"
+#include "colmap_seapoint/commands/picture_scale.h"
 #include "colmap_seapoint/commands/read_rig.h"
 #include "colmap_seapoint/io/atomic_file.h"
 #include "colmap_seapoint/io/colmap_model.h"
@@ -29,6 +30,19 @@ void Validate(const PartialDensifierOptions& options) {
   }
 }
 
+// The model as the pictures see it.
+SparseModel ReadModel(const PartialDensifierOptions& options) {
+  SparseModel model = ReadSparseModel(options.input_path);
+  const int num_scaled =
+      ScaleCamerasToPictures(options.image_path, options.run.num_threads, &model);
+  if (num_scaled > 0) {
+    LogInfo(std::to_string(num_scaled) +
+            " pictures are of another resolution than the model's cameras, which are scaled to "
+            "them");
+  }
+  return model;
+}
+
 // Sees a folder of foreign pictures before hours of work.
 void CheckPictures(const PartialDensifierOptions& options, const SparseModel& model,
                    const ModelPictures& pictures) {
@@ -45,7 +59,7 @@ void CheckPictures(const PartialDensifierOptions& options, const SparseModel& mo
   throw Error(options.image_path,
               "none of the model's " + std::to_string(model.images.size()) +
                   " pictures can be used (" + first_problem + ")",
-              "give the --image_path that the model was made from");
+              "give the --image_path that the model was made from, reduced or in full");
 }
 
 // The hash of a whole survey takes as long as reading it: on all threads.
@@ -142,7 +156,7 @@ RunReport DensifyModel(const PartialDensifierOptions& options) {
   SequenceReport sequence;
   {
     StageTimer timer(&report, "partial_densifier");
-    const SparseModel model = ReadSparseModel(options.input_path);
+    const SparseModel model = ReadModel(options);
     report.images_in = static_cast<int64_t>(model.images.size());
     ModelPictures pictures(model, options.image_path, options.database_path, options.extraction,
                            options.matching);

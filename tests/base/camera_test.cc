@@ -83,6 +83,24 @@ INSTANTIATE_TEST_SUITE_P(
                   {0.03, -0.01, 1e-3, -2e-3, 0.004, -0.001, 2e-3, 1e-3},
                   70}));
 
+// What a camera sees at (x, y), it sees at (k x, k y) in a picture k times as large.
+TEST_P(CameraRoundTripTest, ScaledByHalfOrThreefoldItSeesTheSame) {
+  const RoundTrip& param = GetParam();
+  const Camera camera = TestCamera(param.model, param.distortion);
+  for (const double k : {0.5, 3.0}) {
+    const Camera scaled = ScaledCamera(camera, static_cast<int>(k * camera.width),
+                                       static_cast<int>(k * camera.height));
+    EXPECT_EQ(scaled.width, k * camera.width);
+    EXPECT_EQ(scaled.height, k * camera.height);
+    for (double azimuth = 0; azimuth < 360; azimuth += 40) {
+      const Eigen::Vector3d ray = Direction(0.7 * param.max_angle_deg, azimuth);
+      const Eigen::Vector2d pixel = *camera.ImgFromCam(ray);
+      EXPECT_LT((*scaled.ImgFromCam(ray) - k * pixel).norm(), 1e-9);
+      EXPECT_LT((*scaled.CamFromImg(k * pixel) - *camera.CamFromImg(pixel)).norm(), 1e-8);
+    }
+  }
+}
+
 void ExpectSamePixels(const Camera& camera, bool fisheye, double max_angle_deg) {
   std::vector<cv::Point3d> points;
   for (double angle = 0; angle <= max_angle_deg; angle += max_angle_deg / 12) {
@@ -116,6 +134,31 @@ TEST(CameraTest, MatchesOpenCV) {
       TestCamera(CameraModel::kFullOpenCV, {0.3, 0.1, 1e-3, -2e-3, 0.02, 0.6, 0.2, 0.03}), false,
       50);
   ExpectSamePixels(TestCamera(CameraModel::kOpenCVFisheye, {0.05, -0.02, 0.01, -0.002}), true, 75);
+}
+
+TEST(CameraTest, ScaledSizes) {
+  EXPECT_TRUE(AreScaledSizes(1360, 1024, 1360, 1024));
+  EXPECT_TRUE(AreScaledSizes(1360, 1024, 680, 512));
+  EXPECT_TRUE(AreScaledSizes(680, 512, 1360, 1024));
+  // 4000 x 3000 in thirds, rounded, cut and rounded up; 1500 on the longer side.
+  for (const int width : {1333, 1334}) EXPECT_TRUE(AreScaledSizes(4000, 3000, width, 1000));
+  EXPECT_TRUE(AreScaledSizes(4003, 3001, 1500, 1125));
+  EXPECT_FALSE(AreScaledSizes(4000, 3000, 1330, 1000));
+  EXPECT_FALSE(AreScaledSizes(1360, 1024, 1024, 1360));  // turned
+  EXPECT_FALSE(AreScaledSizes(1360, 1024, 1360, 1023));  // cut
+  EXPECT_FALSE(AreScaledSizes(1360, 1024, 1359, 1024));
+  EXPECT_FALSE(AreScaledSizes(1360, 1024, 1300, 1100));
+  EXPECT_FALSE(AreScaledSizes(1920, 1080, 640, 480));
+  EXPECT_FALSE(AreScaledSizes(0, 0, 640, 480));
+}
+
+TEST(CameraTest, ScalingWithRoundedSidesKeepsBothAxesExact) {
+  const Camera camera = TestCamera(CameraModel::kPinhole, {});
+  const Camera scaled = ScaledCamera(camera, 401, 302);
+  const Eigen::Vector3d ray(0.3, -0.2, 1);
+  const Eigen::Vector2d pixel = *camera.ImgFromCam(ray);
+  EXPECT_NEAR(scaled.ImgFromCam(ray)->x(), pixel.x() * 401 / 1360, 1e-9);
+  EXPECT_NEAR(scaled.ImgFromCam(ray)->y(), pixel.y() * 302 / 1024, 1e-9);
 }
 
 TEST(CameraTest, KnownValues) {

@@ -66,6 +66,25 @@ TEST_F(ModelPicturesTest, SeaPointsOfTheDatabaseOrNone) {
   EXPECT_EQ(without.ReadMatches(0, 1), std::nullopt);
 }
 
+// paper 4, hybrid resolution: they were found in 640 x 480.
+TEST_F(ModelPicturesTest, SeaPointsFollowTheSizeOfTheModelsCamera) {
+  const Features stored = MakeFeatures(9, ids_["b"]);
+  model_.cameras[1] = MakeCamera(CameraModel::kPinhole, 1500, 1920, 1440);
+  const Features scaled = Open().ReadSeaPoints(1).value();
+  ASSERT_EQ(scaled.points.size(), stored.points.size());
+  for (size_t i = 0; i < stored.points.size(); ++i) {
+    EXPECT_FLOAT_EQ(scaled.points[i].x, 3 * stored.points[i].x);
+    EXPECT_FLOAT_EQ(scaled.points[i].y, 3 * stored.points[i].y);
+    EXPECT_FLOAT_EQ(scaled.points[i].scale, 3 * stored.points[i].scale);
+    EXPECT_EQ(scaled.points[i].orientation, stored.points[i].orientation);
+  }
+  EXPECT_EQ(scaled.descriptors, stored.descriptors);
+  model_.cameras[1] = MakeCamera(CameraModel::kPinhole, 1500, 1920, 1080);
+  EXPECT_EQ(Open().NumInDatabase(), 0);
+  EXPECT_EQ(Open().ReadSeaPoints(1), std::nullopt);
+  EXPECT_EQ(Open().ReadMatches(0, 1), std::nullopt);
+}
+
 // Indices of other software's keypoints are not ours.
 TEST_F(ModelPicturesTest, MatchesOfReplacedKeypointsAreNotUsed) {
   Execute(path_, "UPDATE keypoints SET data = zeroblob(144) WHERE image_id = " +
