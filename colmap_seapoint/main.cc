@@ -2,10 +2,15 @@
 #include <algorithm>
 #include <exception>
 #include <iostream>
+#include <limits>
 #include <new>
 #include <string>
 #include <variant>
 #include <vector>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
@@ -64,9 +69,21 @@ int Run(const std::vector<std::string>& arguments) {
   throw UsageError("'" + name + "' is no command; 'colmap_seapoint help' lists them");
 }
 
+// Pictures of tens of megabytes come and go. By default each would be fresh memory, zeroed by the
+// system page by page (a third of the CPU time of densifying 12-megapixel pictures) and given back:
+// it is kept for the next one.
+void KeepFreedMemory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_MAX, 0);
+  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+  mallopt(M_ARENA_MAX, 1);
+#endif
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  KeepFreedMemory();
   try {
     return Run({argv + 1, argv + argc});
   } catch (const UsageError& error) {

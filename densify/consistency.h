@@ -14,7 +14,9 @@ void RemoveInconsistent(const Gate& gate, PartialDisparity* nodes);
 // in picture 2 as a better one.
 void RemoveContradictions(const Gate& gate, int num_threads, PartialDisparity* samples);
 
-// Samples of the fitted surface that hardly any other agrees with.
-void RemoveUnsupported(PartialSurface* surface);
+// Samples of the fitted surface that hardly any other agrees with, and those whose two rays meet at
+// less than a degree: near the epipole of a picture taken in the direction of motion, depth is a
+// guess.
+void RemoveUnsupported(const PairGeometry& geometry, PartialSurface* surface);
 
 }  // namespace colmap_seapoint

@@ -17,7 +17,8 @@ namespace {
 
 constexpr double kSamplesPerPicture = 0.75e6;
 constexpr int kSamplesPerCell = 4;         // along each side
-constexpr int kMinCell = 2 * kNodeStep;    // pixels: a cell holds nodes
+constexpr int kMinCell = 2 * kMinNodeStep;  // pixels: a cell holds nodes
+constexpr int kMaxFineStep = 2;             // samples farther apart: nodes are too
 constexpr double kMaxRowDifference = 2.0;  // between a seed's two rect rows, pixels
 constexpr int kMinWindow = 8;  // pixels: a smaller window of a picture holds nothing
 // Growth only has to find the surface, at every node: what is weak is judged when it is refined.
@@ -114,9 +115,9 @@ class Task {
     const SampleGrid& nodes = gate.Nodes();
     for (int b = 0; b < nodes.height; ++b) {
       for (int a = 0; a < nodes.width; ++a) {
-        const int x = a * kNodeStep, y = b * kNodeStep;
+        const int x = a * nodes.step, y = b * nodes.step;
         if (gate.At(x, y) != Gate::kOpen) continue;
-        blocks1->Want(x - margin, y - margin, x + kNodeStep + margin, y + kNodeStep + margin);
+        blocks1->Want(x - margin, y - margin, x + nodes.step + margin, y + nodes.step + margin);
       }
     }
     const int reach = static_cast<int>(growth_) + margin;
@@ -178,15 +179,15 @@ struct GatedNodes {
 };
 
 GatedNodes MakeGate(const PairInput& input, const Task& task, const PairGeometry& geometry,
-                    const RectMap& map1, const RectWindow& window) {
-  GatedNodes gated{Gate(window, Gate::kClosed), {}};
+                    const RectMap& map1, const RectWindow& window, int node_step) {
+  GatedNodes gated{Gate(window, node_step, Gate::kClosed), {}};
   const SampleGrid& nodes = gated.gate.Nodes();
   gated.cell.assign(nodes.Size(), -1);
   for (int b = 0; b < nodes.height; ++b) {
     for (int a = 0; a < nodes.width; ++a) {
       const auto source = map1.Source(nodes.PixelX(a), nodes.PixelY(b));
       if (!source) continue;
-      const size_t node = nodes.NodeOf(a, b);
+      const size_t node = nodes.IndexAt(nodes.PixelX(a), nodes.PixelY(b));
       const size_t cell = input.cells.IndexOf(source->x(), source->y());
       gated.cell[node] = static_cast<int>(cell);
       if (task.IsClosed(cell)) continue;
@@ -229,7 +230,9 @@ PairResult DensifyPair(const PairInput& input, const PartialDensificationOptions
   if (task.Seeds().size() < kMinSeeds) return Failed("too few seeds in areas that are new");
 
   const Timer rectification_timer;
-  const int margin = options.window_size / 2 + kNodeStep;
+  const int step = SampleStep(input.view1.camera, options);
+  const int node_step = step > kMaxFineStep ? kMaxNodeStep : kMinNodeStep;
+  const int margin = options.window_size / 2 + node_step;
   const RectWindow window1 = task.Window1(margin);
   const RectWindow window2 = task.Window2(window1, margin);
   if (std::min(window1.width, window2.width) < kMinWindow ||
@@ -238,7 +241,7 @@ PairResult DensifyPair(const PairInput& input, const PartialDensificationOptions
   }
   const RectMap map1(*geometry, false, window1, num_threads);
   const RectMap map2(*geometry, true, window2, num_threads);
-  const GatedNodes nodes = MakeGate(input, task, *geometry, map1, window1);
+  const GatedNodes nodes = MakeGate(input, task, *geometry, map1, window1, node_step);
   BlockMask blocks1(window1), blocks2(window2);
   task.WantBlocks(nodes.gate, window1, window2, margin, &blocks1, &blocks2);
   const RectPicture picture1 = map1.Rectify(*input.gray1, blocks1, num_threads);
@@ -249,18 +252,17 @@ PairResult DensifyPair(const PairInput& input, const PartialDensificationOptions
   const Timer propagation_timer;
   const float min_zncc = static_cast<float>(options.min_zncc);
   const int max_generations =
-      std::max(1, static_cast<int>(growth / kNodeStep) - kMaxRefinementSpread);
+      std::max(1, static_cast<int>(growth / node_step) - kMaxRefinementSpread);
   PartialDisparity coarse =
       Propagate(picture1, picture2, nodes.gate, task.Seeds(),
                 {kGrowthWindow, kGrowthZncc * min_zncc, max_generations}, num_threads);
   RemoveInconsistent(nodes.gate, &coarse);
-  const int step = SampleStep(input.view1.camera, options);
   result.partial = Refine(picture1, picture2, nodes.gate, coarse,
                           {options.window_size, min_zncc, step}, num_threads);
   RemoveContradictions(nodes.gate, num_threads, &result.partial);
   PartialSurface surface =
       FitSurface(result.partial, std::max(2, kSmoothing / step), kMaxSlope, num_threads);
-  RemoveUnsupported(&surface);
+  RemoveUnsupported(*geometry, &surface);
   result.propagation_seconds = propagation_timer.WallSeconds();
 
   result.num_seeds = static_cast<int>(task.Seeds().size());
@@ -268,7 +270,7 @@ PairResult DensifyPair(const PairInput& input, const PartialDensificationOptions
   result.cloud = MakePartialCloud(surface, *geometry, map1, *input.color1, num_threads);
   result.cloud.image_idx1 = input.view1.image_idx;
   result.cloud.image_idx2 = input.view2.image_idx;
-  CellTally tally = TallyCells(surface, *geometry, nodes.cell, input.cells, task.NewCells());
+  CellTally tally = TallyCells(surface, *geometry, nodes.gate.Nodes(), nodes.cell, input.cells, task.NewCells());
   result.filled = std::move(tally.filled);
   result.footprint = std::move(tally.footprint);
   return result;

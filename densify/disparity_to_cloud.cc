@@ -109,6 +109,7 @@ PartialCloud MakePartialCloud(const PartialSurface& surface, const PairGeometry&
 }
 
 CellTally TallyCells(const PartialSurface& surface, const PairGeometry& geometry,
+                     const SampleGrid& nodes,
                      const std::vector<int>& cell_of_node, const CellGrid& cells,
                      const std::vector<uint8_t>& is_new) {
   const SampleGrid& grid = surface.grid;
@@ -121,7 +122,7 @@ CellTally TallyCells(const PartialSurface& surface, const PairGeometry& geometry
     const float* row = RowOf(surface.disparity, grid, b);
     const float y = static_cast<float>(grid.RectY(b));
     for (int a = 0; a < grid.width; ++a) {
-      const int cell = cell_of_node[grid.NodeOf(a, b)];
+      const int cell = cell_of_node[nodes.IndexAt(grid.PixelX(a), grid.PixelY(b))];
       if (cell < 0) continue;
       Sum& sum = sums[static_cast<size_t>(cell)];
       ++sum.all;

@@ -16,14 +16,15 @@ namespace colmap_seapoint {
 PartialCloud MakePartialCloud(const PartialSurface& surface, const PairGeometry& geometry,
                               const RectMap& map1, const ColorImage& color1, int num_threads);
 
-// What the surface fills of picture 1's cells. cell_of_node: the cell that each node (kNodeStep)
-// lies in, -1 outside the picture.
+// What the surface fills of picture 1's cells. cell_of_node: the cell that each of the
+// nodes lies in, -1 outside the picture.
 struct CellTally {
   std::vector<float> filled;  // share of each cell's samples that hold surface, 0..1
   CloudFootprint footprint;   // mean point of every new cell of which nine tenths are filled
 };
 CellTally TallyCells(const PartialSurface& surface, const PairGeometry& geometry,
-                     const std::vector<int>& cell_of_node, const CellGrid& cells,
+                     const SampleGrid& nodes, const std::vector<int>& cell_of_node,
+                     const CellGrid& cells,
                      const std::vector<uint8_t>& is_new);
 
 }  // namespace colmap_seapoint

@@ -15,7 +15,7 @@ namespace {
 constexpr int kUnmatched = -1;
 constexpr float kMinImprovement = 0.02f;  // that a colliding region needs to take a sample over
 constexpr int kSeedSearch = 2;            // pixels of disparity around a seed's own
-constexpr int kSearch = kNodeStep / 2;    // and around a neighbour's
+constexpr int kMaxSearch = kMaxNodeStep / 2;
 constexpr int64_t kChunk = 128;           // nodes a task
 
 struct Candidate {
@@ -76,6 +76,7 @@ class Propagation {
         gate_(gate),
         options_(options),
         num_threads_(num_threads),
+        search_(grid_.step / 2),
         state_(grid_.Size()),
         generation_(grid_.Size(), -1),
         visited_(grid_.Size(), -1) {}
@@ -135,9 +136,9 @@ class Propagation {
       const int disparity = state_[static_cast<size_t>(node)].disparity;
       ForEachNeighbor(node, [&](int neighbor) {
         const size_t n = static_cast<size_t>(neighbor);
-        if (visited_[n] == generation || gate_.At(grid_.PixelX(neighbor % grid_.width), grid_.PixelY(neighbor / grid_.width)) == Gate::kClosed) return;
+        if (visited_[n] == generation || gate_[n] == Gate::kClosed) return;
         const int held = state_[n].disparity;
-        if (held != kUnmatched && std::abs(held - disparity) <= kSearch) return;
+        if (held != kUnmatched && std::abs(held - disparity) <= search_) return;
         visited_[n] = generation;
         targets.push_back(neighbor);
       });
@@ -159,13 +160,13 @@ class Propagation {
   }
 
   Candidate BestFromNeighbors(int target, int generation) const {
-    std::array<int, 4 * (2 * kSearch + 1)> disparities;
+    std::array<int, 4 * (2 * kMaxSearch + 1)> disparities;
     int count = 0;
     const int held = state_[static_cast<size_t>(target)].disparity;
     ForEachNeighbor(target, [&](int neighbor) {
       const size_t n = static_cast<size_t>(neighbor);
       if (generation_[n] != generation) return;
-      for (int d = state_[n].disparity - kSearch; d <= state_[n].disparity + kSearch; ++d) {
+      for (int d = state_[n].disparity - search_; d <= state_[n].disparity + search_; ++d) {
         int* const end = disparities.data() + count;
         if (d == held || std::find(disparities.data(), end, d) != end) continue;
         disparities[static_cast<size_t>(count++)] = d;
@@ -276,6 +277,7 @@ class Propagation {
   const Gate& gate_;
   const PropagationOptions options_;
   const int num_threads_;
+  const int search_;  // pixels of disparity around a neighbour's
   std::vector<Candidate> state_;
   std::vector<int> generation_;  // in which a sample was last matched
   std::vector<int> visited_;     // generation that last collected it as a target

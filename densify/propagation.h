@@ -33,21 +33,18 @@ struct SampleGrid {
   int PixelY(int b) const { return b * step + step / 2; }
   double RectX(int a) const { return window.x0 + PixelX(a) + 0.5; }
   double RectY(int b) const { return window.y0 + PixelY(b) + 0.5; }
-  // The node (see kNodeStep) whose square holds a sample, the nearest for one beyond the window.
-  size_t NodeOf(int a, int b) const;
+  // The sample whose square holds a window pixel, the nearest for one beyond the window.
+  size_t IndexAt(int x, int y) const {
+    return static_cast<size_t>(std::min(y / step, height - 1)) * static_cast<size_t>(width) +
+           static_cast<size_t>(std::min(x / step, width - 1));
+  }
   // The first sample at or behind a window pixel.
   int FirstFrom(int pixel) const { return (pixel - step / 2 + step - 1) / step; }
 };
 
-// Propagation works on a coarse grid of samples, the nodes; Refine fills in between.
-inline constexpr int kNodeStep = 4;
-
-inline size_t SampleGrid::NodeOf(int a, int b) const {
-  const int nodes_across = (window.width + kNodeStep - 1) / kNodeStep;
-  const int x = std::min(PixelX(a), window.width - 1), y = std::min(PixelY(b), window.height - 1);
-  return static_cast<size_t>(y / kNodeStep) * static_cast<size_t>(nodes_across) +
-         static_cast<size_t>(x / kNodeStep);
-}
+// Propagation works on a coarse grid of samples, the nodes, 4 or 8 pixels apart; Refine fills in
+// between.
+inline constexpr int kMinNodeStep = 4, kMaxNodeStep = 8;
 
 // Where picture 1 may be matched, kept at nodes. kClosed: not at all. kOpen: yes. A positive value:
 // something at that disparity is reconstructed already, so only what differs clearly from it may be
@@ -58,16 +55,14 @@ class Gate {
   static constexpr float kClosed = -2;
 
   Gate() = default;
-  Gate(const RectWindow& window, float value)
-      : nodes_(window, kNodeStep), value_(nodes_.Size(), value) {}
+  Gate(const RectWindow& window, int node_step, float value)
+      : nodes_(window, node_step), value_(nodes_.Size(), value) {}
 
   const SampleGrid& Nodes() const { return nodes_; }
   float& operator[](size_t node) { return value_[node]; }
+  float operator[](size_t node) const { return value_[node]; }
   // Of the node whose square holds a window pixel.
-  float At(int x, int y) const {
-    return value_[static_cast<size_t>(y / kNodeStep) * static_cast<size_t>(nodes_.width) +
-                  static_cast<size_t>(x / kNodeStep)];
-  }
+  float At(int x, int y) const { return value_[nodes_.IndexAt(x, y)]; }
   static bool Admits(float gate, float disparity);
 
  private:

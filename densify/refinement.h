@@ -17,7 +17,7 @@ struct RefinementOptions {
 // propagation could not match.
 inline constexpr int kMaxRefinementSpread = 4;
 
-// `nodes`: Propagate's, a node every kNodeStep pixels of picture 1's window. Samples lie in the
+// `nodes`: Propagate's. Samples lie in the
 // surroundings of matched nodes (kMaxRefinementSpread), never at closed ones. Tiles of 64 x 32 pixels are
 // independent: the same result for any number of threads. Cost: about 10 ns a pixel in them,
 // whatever the window; memory: the result's.

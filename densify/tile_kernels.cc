@@ -103,26 +103,27 @@ struct Frame {
 // The prediction along one row of pixels, `row` of the scratch.
 void PredictRow(const Prediction& prediction, const Frame& frame, int row_idx, float* row) {
   const DF df;
-  const int down = frame.top + row_idx + kNodeStep / 2;
-  const int b = std::clamp(down / kNodeStep, 0, kNodesY - 2);
-  const float v = static_cast<float>(down - b * kNodeStep) / kNodeStep;
-  float node[kNodesX];
-  for (size_t a = 0; a < kNodesX; ++a) {
-    const float top = prediction[static_cast<size_t>(b)][a];
-    node[a] = top + v * (prediction[static_cast<size_t>(b) + 1][a] - top);
-  }
+  const int step = prediction.node_step, nodes_x = prediction.NodesX();
+  const int down = frame.top + row_idx + step / 2;
+  const int b = std::clamp(down / step, 0, prediction.NodesY() - 2);
+  const float v = static_cast<float>(down - b * step) / static_cast<float>(step);
+  const auto& above = prediction.disparity[static_cast<size_t>(b)];
+  const auto& below = prediction.disparity[static_cast<size_t>(b) + 1];
   const int lanes = static_cast<int>(hn::Lanes(df));
-  const int offset = frame.left + kNodeStep / 2;  // from the first node to column 0
-  for (int a = 0; a + 1 < kNodesX; ++a) {
-    const float slope =
-        (node[static_cast<size_t>(a) + 1] - node[static_cast<size_t>(a)]) / kNodeStep;
-    const int begin = a == 0 ? 0 : std::max(0, a * kNodeStep - offset);
-    const int end = a + 2 == kNodesX ? frame.columns + lanes : (a + 1) * kNodeStep - offset;
+  const int offset = frame.left + step / 2;  // from the first node to column 0
+  float node = above[0] + v * (below[0] - above[0]);
+  for (int a = 0; a + 1 < nodes_x; ++a) {
+    const size_t right = static_cast<size_t>(a) + 1;
+    const float next = above[right] + v * (below[right] - above[right]);
+    const VF slope = hn::Set(df, (next - node) / static_cast<float>(step));
+    const VF start = hn::Set(df, node);
+    node = next;
+    const int begin = a == 0 ? 0 : std::max(0, a * step - offset);
+    const int end = a + 2 == nodes_x ? frame.columns + lanes : (a + 1) * step - offset;
     for (int c = begin; c < end; c += lanes) {
-      const VF t = hn::Add(hn::Iota(df, 0), hn::Set(df, static_cast<float>(
-                                                             c + offset - a * kNodeStep)));
-      hn::StoreU(hn::Add(hn::Set(df, node[static_cast<size_t>(a)]), hn::Mul(t, hn::Set(df, slope))),
-                 df, row + c);
+      const VF t = hn::Add(hn::Iota(df, 0),
+                           hn::Set(df, static_cast<float>(c + offset - a * step)));
+      hn::StoreU(hn::Add(start, hn::Mul(t, slope)), df, row + c);
     }
   }
 }
@@ -357,13 +358,14 @@ namespace tile {
 HWY_EXPORT(Match);
 
 float PredictedAt(const Prediction& prediction, int x, int y) {
-  const int right = x + kNodeStep / 2, down = y + kNodeStep / 2;
-  const int a = std::clamp(right / kNodeStep, 0, kNodesX - 2);
-  const int b = std::clamp(down / kNodeStep, 0, kNodesY - 2);
-  const float u = static_cast<float>(right - a * kNodeStep) / kNodeStep;
-  const float v = static_cast<float>(down - b * kNodeStep) / kNodeStep;
-  const auto& top = prediction[static_cast<size_t>(b)];
-  const auto& bottom = prediction[static_cast<size_t>(b) + 1];
+  const int step = prediction.node_step;
+  const int right = x + step / 2, down = y + step / 2;
+  const int a = std::clamp(right / step, 0, prediction.NodesX() - 2);
+  const int b = std::clamp(down / step, 0, prediction.NodesY() - 2);
+  const float u = static_cast<float>(right - a * step) / static_cast<float>(step);
+  const float v = static_cast<float>(down - b * step) / static_cast<float>(step);
+  const auto& top = prediction.disparity[static_cast<size_t>(b)];
+  const auto& bottom = prediction.disparity[static_cast<size_t>(b) + 1];
   const size_t i = static_cast<size_t>(a);
   const float left = top[i] + v * (bottom[i] - top[i]);
   const float next = top[i + 1] + v * (bottom[i + 1] - top[i + 1]);

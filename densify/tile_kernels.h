@@ -18,12 +18,18 @@ inline constexpr int kWidth = 64, kHeight = 32;  // of a tile, pixels: at most
 // Windows may be asked for half a window around a tile too.
 inline constexpr int kWideWidth = kWidth + kMaxWindow - 1, kWideHeight = kHeight + kMaxWindow - 1;
 inline constexpr int kRowStride = 96;  // floats between rows of results
-inline constexpr int kNodesX = kWidth / kNodeStep + 2, kNodesY = kHeight / kNodeStep + 2;
+inline constexpr int kNodesX = kWidth / kMinNodeStep + 2, kNodesY = kHeight / kMinNodeStep + 2;
 
 // Predicted disparities of the tile's nodes and one row or column of nodes around; linear in
-// between, and beyond the outermost. Node (0, 0) lies at pixel (-kNodeStep / 2, -kNodeStep / 2) of
-// the tile.
-using Prediction = std::array<std::array<float, kNodesX>, kNodesY>;
+// between, and beyond the outermost. Node (0, 0) lies at pixel (-node_step / 2, -node_step / 2) of
+// the tile. With a larger step only the first rows and columns are used.
+struct Prediction {
+  int node_step = kMinNodeStep;
+  std::array<std::array<float, kNodesX>, kNodesY> disparity = {};
+
+  int NodesX() const { return kWidth / node_step + 2; }
+  int NodesY() const { return kHeight / node_step + 2; }
+};
 
 // Pictures rectified, as Rectify makes them: 0 outside the picture.
 struct Pair {

@@ -30,8 +30,14 @@ float At(const PartialDisparity& partial, int a, int b) {
   return partial.disparity[static_cast<size_t>(b * partial.grid.width + a)];
 }
 
+PairGeometry GeometryOfFocal(double focal) {
+  PairGeometry geometry;
+  geometry.focal = focal;
+  return geometry;
+}
+
 Gate OpenGate(const PartialDisparity& partial) {
-  return Gate(partial.grid.window, Gate::kOpen);
+  return Gate(partial.grid.window, kMinNodeStep, Gate::kOpen);
 }
 
 // Two surfaces that see each other's places: of two claims to one place the better stays.
@@ -171,10 +177,10 @@ TEST(ConsistencyTest, LonersGo) {
 TEST(ConsistencyTest, WhatIsReconstructedSupports) {
   for (const float gate_disparity : {40.0f, 60.0f}) {
     PartialDisparity partial = Square(3, 40);
-    Gate gate(partial.grid.window, Gate::kOpen);
-    for (int y = 8; y < 16; y += kNodeStep) {
-      for (int x = 0; x < 12; x += kNodeStep) {
-        gate[static_cast<size_t>(y / kNodeStep * gate.Nodes().width + x / kNodeStep)] =
+    Gate gate(partial.grid.window, kMinNodeStep, Gate::kOpen);
+    for (int y = 8; y < 16; y += kMinNodeStep) {
+      for (int x = 0; x < 12; x += kMinNodeStep) {
+        gate[static_cast<size_t>(y / kMinNodeStep * gate.Nodes().width + x / kMinNodeStep)] =
             gate_disparity;
       }
     }
@@ -188,7 +194,7 @@ TEST(ConsistencyTest, UnsupportedSurfaceGoes) {
   surface.grid = SampleGrid({0, 0, 10, 1}, 1);
   surface.disparity.assign(10, 33);
   for (uint8_t n = 0; n < 10; ++n) surface.support.push_back(n);
-  RemoveUnsupported(&surface);
+  RemoveUnsupported(GeometryOfFocal(100), &surface);
   for (size_t n = 0; n < 10; ++n) EXPECT_EQ(surface.disparity[n], n < 6 ? 0 : 33);
 }
 
@@ -209,6 +215,28 @@ TEST(ConsistencyTest, SameWithAnyNumberOfThreads) {
     RemoveContradictions(OpenGate(many), num_threads, &many);
     EXPECT_EQ(many.disparity, one.disparity);
     EXPECT_EQ(many.score, one.score);
+  }
+}
+
+// Towards the epipole, far along x, the same disparity is an ever smaller angle between the rays.
+TEST(ConsistencyTest, RaysThatHardlyMeetMeasureNothing) {
+  PartialSurface surface;
+  surface.grid = SampleGrid(RectWindow{0, -4, 2000, 8}, 8);
+  surface.disparity.assign(surface.grid.Size(), 20);
+  surface.support.assign(surface.grid.Size(), 25);
+  const double focal = 500;
+  RemoveUnsupported(GeometryOfFocal(focal), &surface);
+  for (int a = 0; a < surface.grid.width; ++a) {
+    // Two pinholes a baseline of 1 apart, the point in the plane y = 0.
+    const double x = surface.grid.RectX(a), depth = focal / 20;
+    const double angle = std::atan(x / focal) - std::atan((x * depth / focal - 1) / depth);
+    const float disparity = surface.disparity[static_cast<size_t>(a)];
+    if (angle * 180 / M_PI > 1.03) {
+      EXPECT_EQ(disparity, 20) << x;
+    }
+    if (angle * 180 / M_PI < 0.97) {
+      EXPECT_EQ(disparity, 0) << x;
+    }
   }
 }
 

@@ -191,7 +191,7 @@ std::vector<int> PointsOfCells(const PairScene& scene, const PairInput& input,
     const double x = std::fmod(pixel->x(), input.cells.cell);
     const double y = std::fmod(pixel->y(), input.cells.cell);
     const double edge = std::min(std::min(x, y), input.cells.cell - std::max(x, y));
-    if (edge > kNodeStep) ++count[input.cells.IndexOf(pixel->x(), pixel->y())];
+    if (edge > kMinNodeStep) ++count[input.cells.IndexOf(pixel->x(), pixel->y())];
   }
   return count;
 }

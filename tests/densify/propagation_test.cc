@@ -10,13 +10,13 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr int kNodesX = 160, kNodesY = 60, kDisparity = 10;
-constexpr int kWidth = kNodesX * kNodeStep, kHeight = kNodesY * kNodeStep;
+constexpr int kWidth = kNodesX * kMinNodeStep, kHeight = kNodesY * kMinNodeStep;
 
 // Two rectified pictures of a wall at one disparity. Stripes of period 12 beneath fine noise: at
 // 12 pixels too much it still correlates, but less.
 struct Wall {
   RectPicture picture1, picture2;
-  Gate gate{RectWindow{0, 0, kWidth, kHeight}, Gate::kOpen};
+  Gate gate{RectWindow{0, 0, kWidth, kHeight}, kMinNodeStep, Gate::kOpen};
 
   Wall() {
     std::mt19937 generator(3);
@@ -48,7 +48,7 @@ struct Wall {
 
 // The seed at the middle of a node.
 Seed SeedAt(int a, int b, double disparity) {
-  return {(a + 0.5) * kNodeStep, (b + 0.5) * kNodeStep, disparity};
+  return {(a + 0.5) * kMinNodeStep, (b + 0.5) * kMinNodeStep, disparity};
 }
 
 int CountNear(const PartialDisparity& partial, double disparity) {
@@ -60,7 +60,7 @@ int CountNear(const PartialDisparity& partial, double disparity) {
 TEST(PropagationTest, OneSeedFillsTheWall) {
   const PartialDisparity partial = Wall().Grow({SeedAt(80, 30, kDisparity)});
   // All but the windows' margin, and what lies left of picture 2.
-  const int first = (4 + kDisparity + 1 + 1) / kNodeStep;
+  const int first = (4 + kDisparity + 1 + 1) / kMinNodeStep;
   const int expected = (kNodesX - 1 - first) * (kNodesY - 2);
   EXPECT_NEAR(CountNear(partial, kDisparity), expected, 0.02 * expected);
   EXPECT_EQ(partial.num_failed_seeds, 0);
@@ -127,15 +127,15 @@ TEST(SampleGridTest, EverySampleHasItsNode) {
     for (int width = 1; width <= 50; ++width) {
       const int height = 1 + width * 7 % 30;
       const SampleGrid grid({0, 0, width, height}, step);
-      const SampleGrid nodes({0, 0, width, height}, kNodeStep);
+      const SampleGrid nodes({0, 0, width, height}, kMinNodeStep);
       for (int b = 0; b < grid.height; ++b) {
         for (int a = 0; a < grid.width; ++a) {
-          const size_t node = grid.NodeOf(a, b);
+          const size_t node = nodes.IndexAt(grid.PixelX(a), grid.PixelY(b));
           ASSERT_LT(node, nodes.Size()) << step << " " << width;
           const int u = static_cast<int>(node) % nodes.width;
           const int v = static_cast<int>(node) / nodes.width;
-          ASSERT_EQ(u, std::min(grid.PixelX(a) / kNodeStep, nodes.width - 1));
-          ASSERT_EQ(v, std::min(grid.PixelY(b) / kNodeStep, nodes.height - 1));
+          ASSERT_EQ(u, std::min(grid.PixelX(a) / kMinNodeStep, nodes.width - 1));
+          ASSERT_EQ(v, std::min(grid.PixelY(b) / kMinNodeStep, nodes.height - 1));
         }
       }
     }

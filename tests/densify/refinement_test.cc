@@ -49,7 +49,7 @@ class RectWorld {
   // Exact disparities at the nodes.
   PartialDisparity Nodes() const {
     PartialDisparity nodes;
-    nodes.grid = SampleGrid(picture1.window, kNodeStep);
+    nodes.grid = SampleGrid(picture1.window, kMinNodeStep);
     nodes.disparity.assign(nodes.grid.Size(), 0);
     nodes.score.assign(nodes.grid.Size(), 0.9f);
     for (int b = 0; b < nodes.grid.height; ++b) {
@@ -68,7 +68,7 @@ class RectWorld {
     return Refine(picture1, picture2, Open(), nodes, {window, 0.7f, step}, num_threads);
   }
 
-  Gate Open() const { return Gate(picture1.window, Gate::kOpen); }
+  Gate Open() const { return Gate(picture1.window, kMinNodeStep, Gate::kOpen); }
 
   RectPicture picture1, picture2;
 
@@ -233,9 +233,9 @@ TEST(RefinementTest, HolesFillFromTheirRim) {
     const PartialDisparity result = world.Run(nodes, step);
     const SampleGrid& grid = result.grid;
     int num_deep = 0, num_rim = 0;
-    for (int b = grid.FirstFrom(kTop * kNodeStep); b < grid.FirstFrom(kBottom * kNodeStep); ++b) {
-      for (int a = grid.FirstFrom(kLeft * kNodeStep); a < grid.FirstFrom(kRight * kNodeStep); ++a) {
-        const int u = grid.PixelX(a) / kNodeStep, v = grid.PixelY(b) / kNodeStep;
+    for (int b = grid.FirstFrom(kTop * kMinNodeStep); b < grid.FirstFrom(kBottom * kMinNodeStep); ++b) {
+      for (int a = grid.FirstFrom(kLeft * kMinNodeStep); a < grid.FirstFrom(kRight * kMinNodeStep); ++a) {
+        const int u = grid.PixelX(a) / kMinNodeStep, v = grid.PixelY(b) / kMinNodeStep;
         const int depth = 1 + std::min({u - kLeft, v - kTop, kRight - 1 - u, kBottom - 1 - v});
         const float d = result.disparity[static_cast<size_t>(b * grid.width + a)];
         if (depth > kMaxRefinementSpread) {

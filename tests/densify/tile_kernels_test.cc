@@ -189,11 +189,13 @@ struct Case {
     const float center = static_cast<float>(pair.column_shift + random(-40, 40));
     const float slope_x = static_cast<float>(random(-40, 40)) * 0.02f;
     const float slope_y = static_cast<float>(random(-40, 40)) * 0.02f;
-    for (size_t b = 0; b < prediction.size(); ++b) {
-      for (size_t a = 0; a < prediction[b].size(); ++a) {
+    prediction.node_step = random(0, 1) ? kMinNodeStep : kMaxNodeStep;
+    const float step = static_cast<float>(prediction.node_step);
+    for (size_t b = 0; b < prediction.disparity.size(); ++b) {
+      for (size_t a = 0; a < prediction.disparity[b].size(); ++a) {
         const float bump = bumpy ? static_cast<float>(random(-30, 30)) * 0.02f : 0;
-        prediction[b][a] = center + bump + 4 * slope_x * (static_cast<float>(a) - 9) +
-                           4 * slope_y * (static_cast<float>(b) - 5);
+        prediction.disparity[b][a] = center + bump + step * slope_x * (static_cast<float>(a) - 5) +
+                                     step * slope_y * (static_cast<float>(b) - 3);
       }
     }
     PaintMatches(region, prediction, pair, &gray1, generator);
@@ -250,7 +252,7 @@ TEST(TileKernelsTest, LargestWindowsDoNotOverflow) {
   c.gray2 = c.gray1;
   c.pair.column_shift = c.pair.row_shift = 0;
   c.region = {0, 0, 12, 10, 64, 20, 0, 1};
-  for (auto& row : c.prediction) row.fill(0);
+  for (auto& row : c.prediction.disparity) row.fill(0);
   ForEachVectorTarget([&] {
     const std::vector<float> all = MatchAll(c);
     for (size_t i = 0; i < all.size(); i += 2) {
@@ -265,7 +267,7 @@ TEST(TileKernelsTest, NothingMatchesBeyondThePicture) {
   std::mt19937 generator(2);
   for (const float disparity : {-500.0f, 500.0f, -1e6f, 1e6f}) {
     Case c(7, false, false, &generator);
-    for (auto& row : c.prediction) row.fill(disparity);
+    for (auto& row : c.prediction.disparity) row.fill(disparity);
     c.pair.column_shift = 0;
     ForEachVectorTarget([&] {
       for (const float value : MatchAll(c)) ASSERT_EQ(value, 0);
