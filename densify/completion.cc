@@ -14,7 +14,6 @@ namespace {
 
 constexpr size_t kMaxCovisible = 12;
 constexpr double kMinGain = 0.01;  // share of a picture's cells that makes a pair worth it
-constexpr double kGainTriedOnce = 0.25;
 constexpr float kMinFilledCell = 0.9f;  // share of its samples that makes a cell covered
 constexpr double kMinParallaxDeg = 2;
 constexpr double kMaxParallaxDeg = 40;
@@ -181,7 +180,7 @@ CompletionTarget SelectCompletionPartner(const View& view, const CompletionView&
           !SeesWell(candidate.view, points[i])) {
         continue;
       }
-      gain += seen.tries[cells[i]] == 0 ? 1 : kGainTriedOnce;
+      if (seen.tries[cells[i]] == 0) gain += 1;
       closed[cells[i]] = 0;
     }
     if (gain <= best_gain) continue;

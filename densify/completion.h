@@ -58,7 +58,7 @@ struct CompletionTarget {
 
 // The candidate that sees most of the picture's uncovered cells, at their predicted ranges, with a
 // baseline that can measure depth; none when that is less than kMinGain of the picture. Cells tried
-// once count a quarter.
+// once are worth no pair of their own, but are tried again along with others.
 CompletionTarget SelectCompletionPartner(const View& view, const CompletionView& seen,
                                          const std::vector<CompletionCandidate>& candidates);
 

@@ -190,25 +190,26 @@ TEST(SelectCompletionPartnerTest, ClosesAllButItsTarget) {
   EXPECT_GT(num_open, 300);
 }
 
-// What failed twice is not tried again; once counts less.
+// What failed is worth no pair of its own, and what failed twice is not tried along with others.
 TEST(GivenUpTest, AfterTwoFailures) {
   const View view = ViewAbove(0);
   const std::vector<CloudFootprint> nothing;
   GivenUp given_up;
   const CompletionCandidate candidate = {4, ViewAbove(0.3)};
-  for (int tries = 0; tries < 2; ++tries) {
-    CompletionView seen = LookAt(view, kGrid, nothing, given_up);
-    seen.predicted_range = TrueRanges(view);
-    const CompletionTarget target = SelectCompletionPartner(view, seen, {candidate});
-    ASSERT_EQ(target.partner, 4) << tries;
-    NoteFailures(view, target, {}, &seen, &given_up);
-  }
-  CompletionView seen = LookAt(view, kGrid, nothing, given_up);
-  seen.predicted_range = TrueRanges(view);
+  const auto look_at = [&](const View& at) {
+    CompletionView seen = LookAt(at, kGrid, nothing, given_up);
+    seen.predicted_range = TrueRanges(at);
+    return seen;
+  };
+  CompletionView seen = look_at(view);
+  const CompletionTarget target = SelectCompletionPartner(view, seen, {candidate});
+  ASSERT_EQ(target.partner, 4);
+  NoteFailures(view, target, {}, &seen, &given_up);
+  seen = look_at(view);
   EXPECT_EQ(SelectCompletionPartner(view, seen, {candidate}).partner, -1);
+  NoteFailures(view, target, {}, &seen, &given_up);
   // From elsewhere it is the same surface.
-  CompletionView aside = LookAt(ViewAbove(0.1), kGrid, nothing, given_up);
-  aside.predicted_range = TrueRanges(ViewAbove(0.1));
+  const CompletionView aside = look_at(ViewAbove(0.1));
   int num_given_up = 0;
   for (const uint8_t count : aside.tries) num_given_up += count == 2;
   EXPECT_GT(num_given_up, static_cast<int>(kGrid.Size() / 2));
