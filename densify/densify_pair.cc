@@ -41,10 +41,10 @@ struct RectBox {
 };
 
 void Cut(double low, double high, int* begin, int* size) {
-  const double end = std::min<double>(*begin + *size, std::ceil(high));
-  const double start = std::max<double>(*begin, std::floor(low));
+  const double end = std::clamp(std::ceil(high), static_cast<double>(*begin), *begin + 1.0 * *size);
+  const double start = std::clamp(std::floor(low), static_cast<double>(*begin), end);
   *begin = static_cast<int>(start);
-  *size = std::max(0, static_cast<int>(end - start));
+  *size = static_cast<int>(end - start);
 }
 
 // What the pair has to do: cells, seeds, and the windows that hold them.

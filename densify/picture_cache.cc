@@ -42,6 +42,15 @@ std::shared_ptr<const Picture> PictureCache::Wait(int image_idx, bool with_color
   }
 }
 
+ColorImage PictureCache::ReadAside(int image_idx) {
+  try {
+    return source_->ReadColor(image_idx);
+  } catch (const Error& error) {
+    LeaveOut(image_idx, error.Finding());
+    return {};
+  }
+}
+
 Features PictureCache::ObtainSeaPoints(int image_idx) {
   try {
     if (auto stored = source_->ReadSeaPoints(image_idx)) return std::move(*stored);

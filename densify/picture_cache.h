@@ -28,6 +28,9 @@ class PictureCache {
   // picture of a pair only the grey values are needed: decoding them costs half.
   std::shared_ptr<const Picture> Get(int image_idx) { return Wait(image_idx, true); }
   std::shared_ptr<const Picture> GetGray(int image_idx) { return Wait(image_idx, false); }
+  // Colours for a look, past the cache: what it holds decides where grey values come from. Empty
+  // when the picture cannot be read.
+  ColorImage ReadAside(int image_idx);
   // Empty features when they cannot be had, and the reason likewise. Where none are stored, they
   // are found in the picture, which is decoded once for that and for densification.
   std::shared_ptr<const Features> GetSeaPoints(int image_idx);

@@ -250,13 +250,13 @@ void SequenceState::ShowPair(int first, int second, const Overlap& overlap,
   debug.covered_range = overlap.covered_range;
   debug.partial = &result;
   debug.failed_seeds = FailedSeeds(input, result);
-  std::shared_ptr<const Picture> previous;
+  ColorImage previous;
   std::shared_ptr<const Features> previous_points;
   if (overlap.mask.grid.Size() > 0) {
     debug.previous_image_idx = ImageIdxAt(previous_first_);
-    previous = cache_.Get(ImageIdxAt(previous_first_));
+    previous = cache_.ReadAside(ImageIdxAt(previous_first_));
     previous_points = SeaPointsAt(previous_first_);
-    debug.previous_color = previous ? &previous->color : nullptr;
+    debug.previous_color = previous.Empty() ? nullptr : &previous;
     debug.previous_points = &previous_points->points;
     debug.previous_labels = previous_.labels;
     debug.interpair = *MatchesOf(previous_first_, first);
