@@ -135,7 +135,7 @@ std::vector<double> PredictRanges(const SparseModel& model, const PosedImage& im
 }
 
 CompletionView LookAt(const View& view, const CellGrid& cells,
-                      const std::vector<CloudFootprint>& footprints, const GivenUp& given_up) {
+                      const std::vector<PackedFootprint>& footprints, const GivenUp& given_up) {
   CompletionView seen;
   seen.coverage = ProjectCoverage(footprints, view.camera, view.cam_from_world, cells);
   seen.tries.assign(cells.Size(), 0);
@@ -230,7 +230,7 @@ void NoteFailures(const View& view, const CompletionTarget& target,
                                 std::pair(&twice, &given_up->twice)}) {
     if (footprint->patches.empty()) continue;
     footprint->UpdateSphere();
-    all->push_back(std::move(*footprint));
+    all->emplace_back(*footprint);
   }
 }
 

@@ -36,7 +36,7 @@ std::vector<double> PredictRanges(const SparseModel& model, const PosedImage& im
 // Surface that completion pairs were to cover and could not, after one and after two tries: hidden,
 // too steep, without texture. What failed twice is not tried again, from whatever picture.
 struct GivenUp {
-  std::vector<CloudFootprint> once, twice;
+  std::vector<PackedFootprint> once, twice;
 };
 
 // A picture as the completion pass sees it, cell by cell.
@@ -48,7 +48,7 @@ struct CompletionView {
 
 // Without the predicted ranges.
 CompletionView LookAt(const View& view, const CellGrid& cells,
-                      const std::vector<CloudFootprint>& footprints, const GivenUp& given_up);
+                      const std::vector<PackedFootprint>& footprints, const GivenUp& given_up);
 
 // The pair that completes most, and the cells it is to leave alone: all others than those it is for.
 struct CompletionTarget {

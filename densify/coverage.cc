@@ -7,26 +7,36 @@ namespace colmap_seapoint {
 
 namespace {
 
-// Half-angle of a cone that holds the picture; pi for pictures that see more than 80 degrees aside.
-double ViewConeAngle(const Camera& camera) {
+// A cone around the optical axis that holds the picture.
+struct ViewCone {
+  bool is_all = false;          // for pictures that see more than 80 degrees aside
+  double sine = 0, cosine = 0;  // of its half-angle
+};
+
+ViewCone ViewConeOf(const Camera& camera) {
   double angle = 0;
   for (const double x : {0.0, static_cast<double>(camera.width)}) {
     for (const double y : {0.0, static_cast<double>(camera.height)}) {
       const auto ray = camera.CamFromImg({x, y});
-      if (!ray) return M_PI;
+      if (!ray) return {true};
       angle = std::max(angle, std::atan(ray->norm()));
     }
   }
-  return angle > 80 * M_PI / 180 ? M_PI : 1.05 * angle;
+  if (angle > 80 * M_PI / 180) return {true};
+  return {false, std::sin(1.05 * angle), std::cos(1.05 * angle)};
 }
 
-bool MayBeInView(const CloudFootprint& footprint, const Rigid3d& cam_from_world,
-                 double cone_angle) {
-  const Eigen::Vector3d center = cam_from_world * footprint.center.cast<double>();
-  const double distance = center.norm();
-  if (distance <= footprint.radius) return true;
-  const double angle = std::acos(std::clamp(center.z() / distance, -1.0, 1.0));
-  return angle <= cone_angle + std::asin(footprint.radius / distance);
+// Asked for every footprint of the survey, for every picture: no more than a square root.
+bool MayBeInView(const PackedFootprint& footprint, const Rigid3d& cam_from_world,
+                 const ViewCone& cone) {
+  if (cone.is_all) return true;
+  const Eigen::Vector3d center = cam_from_world * footprint.Center().cast<double>();
+  const double radius = footprint.Radius(), aside = center.head<2>().norm();
+  if (center.squaredNorm() <= radius * radius) return true;
+  // Along and away from the straight line of the cone that is nearest to the sphere's centre.
+  const double along = aside * cone.sine + center.z() * cone.cosine;
+  const double away = aside * cone.cosine - center.z() * cone.sine;
+  return along >= 0 && away <= radius;
 }
 
 void MarkPatch(const SurfacePatch& patch, const Camera& camera, const Rigid3d& cam_from_world,
@@ -57,39 +67,26 @@ void MarkPatch(const SurfacePatch& patch, const Camera& camera, const Rigid3d& c
 
 }  // namespace
 
-void CloudFootprint::UpdateSphere() {
-  center.setZero();
-  radius = 0;
-  if (patches.empty()) return;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const SurfacePatch& patch : patches) sum += patch.center.cast<double>();
-  center = (sum / static_cast<double>(patches.size())).cast<float>();
-  for (const SurfacePatch& patch : patches) {
-    radius = std::max(radius, (patch.center - center).norm() + patch.size);
-  }
-}
-
 double ViewCoverage::CoveredShare() const {
   const auto covered = std::count_if(range.begin(), range.end(), [](float r) { return r > 0; });
   return range.empty() ? 0 : static_cast<double>(covered) / static_cast<double>(range.size());
 }
 
-ViewCoverage ProjectCoverage(const std::vector<CloudFootprint>& footprints, const Camera& camera,
+ViewCoverage ProjectCoverage(const std::vector<PackedFootprint>& footprints, const Camera& camera,
                              const Rigid3d& cam_from_world, const CellGrid& grid) {
   ViewCoverage coverage{grid, std::vector<float>(grid.Size(), 0)};
-  const double cone_angle = ViewConeAngle(camera);
-  for (const CloudFootprint& footprint : footprints) {
-    if (footprint.patches.empty() || !MayBeInView(footprint, cam_from_world, cone_angle)) continue;
+  const ViewCone cone = ViewConeOf(camera);
+  for (const PackedFootprint& footprint : footprints) {
+    if (footprint.NumPatches() == 0 || !MayBeInView(footprint, cam_from_world, cone)) continue;
     AddCoverage(footprint, camera, cam_from_world, &coverage);
   }
   return coverage;
 }
 
-void AddCoverage(const CloudFootprint& footprint, const Camera& camera,
+void AddCoverage(const PackedFootprint& footprint, const Camera& camera,
                  const Rigid3d& cam_from_world, ViewCoverage* coverage) {
-  for (const SurfacePatch& patch : footprint.patches) {
-    MarkPatch(patch, camera, cam_from_world, coverage);
-  }
+  footprint.ForEach(
+      [&](const SurfacePatch& patch) { MarkPatch(patch, camera, cam_from_world, coverage); });
 }
 
 }  // namespace colmap_seapoint

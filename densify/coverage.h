@@ -9,23 +9,9 @@
 #include "colmap_seapoint/base/camera.h"
 #include "colmap_seapoint/base/rigid3.h"
 #include "densify/cell_grid.h"
+#include "densify/packed_footprint.h"
 
 namespace colmap_seapoint {
-
-// A patch of reconstructed surface, one picture cell large.
-struct SurfacePatch {
-  Eigen::Vector3f center;  // world
-  float size;              // side, world units
-};
-
-// All patches of one partial cloud and the sphere around them.
-struct CloudFootprint {
-  std::vector<SurfacePatch> patches;
-  Eigen::Vector3f center = Eigen::Vector3f::Zero();
-  float radius = 0;
-
-  void UpdateSphere();
-};
 
 // A picture's cells: distance from the camera centre to the surface that is reconstructed there;
 // 0 where nothing is.
@@ -38,11 +24,11 @@ struct ViewCoverage {
 
 // Projects all footprints into a picture; the nearest surface wins. O(patches of footprints whose
 // sphere may be in view).
-ViewCoverage ProjectCoverage(const std::vector<CloudFootprint>& footprints, const Camera& camera,
+ViewCoverage ProjectCoverage(const std::vector<PackedFootprint>& footprints, const Camera& camera,
                              const Rigid3d& cam_from_world, const CellGrid& grid);
 
 // Adds one footprint to it.
-void AddCoverage(const CloudFootprint& footprint, const Camera& camera,
+void AddCoverage(const PackedFootprint& footprint, const Camera& camera,
                  const Rigid3d& cam_from_world, ViewCoverage* coverage);
 
 }  // namespace colmap_seapoint

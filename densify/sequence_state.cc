@@ -228,7 +228,7 @@ bool SequenceState::RunPair(int first, int second, const Overlap& overlap,
   report->propagation_seconds = result->propagation_seconds;
   report->total_seconds = timer.WallSeconds();
   if (!result->failure.empty()) return false;
-  footprints_.push_back(std::move(result->footprint));
+  footprints_.emplace_back(result->footprint);
   report_.num_points += report->num_points;
   callbacks_.sink(result->cloud);
   if (callbacks_.debug) ShowPair(first, second, overlap, *report, std::move(input), *result);

@@ -82,7 +82,7 @@ class SequenceState {
 
   int previous_first_ = -1;
   ProcessedPicture previous_;  // of previous_first_
-  std::vector<CloudFootprint> footprints_;
+  std::vector<PackedFootprint> footprints_;
   GivenUp given_up_;  // by the completion pass
   std::set<std::pair<int, int>> densified_pairs_;  // positions, smaller first
   std::vector<std::vector<int>> covisible_;  // position -> positions, most shared points first

@@ -30,7 +30,7 @@ constexpr size_t kMaxImagesForAllPairs = 50;
 // Raise it whenever the same options give other results than before.
 constexpr char kMatchingVersion[] = "4";
 constexpr char kMapperVersion[] = "8";
-constexpr char kDensificationVersion[] = "3";
+constexpr char kDensificationVersion[] = "4";
 
 std::string HashText(const std::string& text) { return HashBytes(text.data(), text.size()); }
 
@@ -246,7 +246,8 @@ void Reconstruction::ReadModels() {
   for (const fs::path& path : ListModels(workspace_ / "sparse")) {
     ModelSummary model;
     model.name = path.filename().string();
-    for (const PosedImage& image : ReadSparseModel(path).images) {
+    const SparseModel read = ReadSparseModel(path, ModelContent::kPosesAndPoints);
+    for (const PosedImage& image : read.images) {
       model.pictures.push_back(image.name);
       registered.insert(image.name);
     }

@@ -32,7 +32,7 @@ void Validate(const PartialDensifierOptions& options) {
 
 // The model as the pictures see it.
 SparseModel ReadModel(const PartialDensifierOptions& options) {
-  SparseModel model = ReadSparseModel(options.input_path);
+  SparseModel model = ReadSparseModel(options.input_path, ModelContent::kPosesAndPoints);
   const int num_scaled =
       ScaleCamerasToPictures(options.image_path, options.run.num_threads, &model);
   if (num_scaled > 0) {

@@ -1,6 +1,8 @@
 #include "colmap_seapoint/io/colmap_model.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <system_error>
 #include <unordered_map>
@@ -54,15 +56,18 @@ bool HasAllFiles(const std::filesystem::path& dir, const std::string& extension)
 }
 
 // Ids that point nowhere would be out-of-range reads in every later stage.
-void CheckReferences(const std::filesystem::path& dir, const SparseModel& model) {
-  std::unordered_map<uint32_t, const PosedImage*> images;
+void CheckReferences(const std::filesystem::path& dir, const ModelBeingRead& read) {
+  const SparseModel& model = read.model;
+  std::unordered_map<uint32_t, size_t> num_features;  // by image_id
   std::set<std::string> names;
   auto fail = [&](const std::string& finding) {
     throw Error(dir.string(), "inconsistent model: " + finding, kRemedy);
   };
-  for (const PosedImage& image : model.images) {
+  for (size_t i = 0; i < model.images.size(); ++i) {
+    const PosedImage& image = model.images[i];
     const std::string who = "image " + std::to_string(image.image_id) + " (" + image.name + ")";
-    if (!images.emplace(image.image_id, &image).second) fail(who + " stands there twice");
+    if (!num_features.emplace(image.image_id, read.num_features[i]).second)
+      fail(who + " stands there twice");
     if (!names.insert(image.name).second) fail(who + ": another image has the same name");
     if (model.cameras.count(image.camera_id) == 0) {
       fail(who + " has camera " + std::to_string(image.camera_id) + ", which does not exist");
@@ -75,8 +80,8 @@ void CheckReferences(const std::filesystem::path& dir, const SparseModel& model)
   }
   for (const auto& [point3D_id, point] : model.points3D) {
     for (const SparsePoint::TrackElement& element : point.track) {
-      const auto image = images.find(element.image_id);
-      if (image == images.end() || element.point2D_idx >= image->second->points2D.size()) {
+      const auto image = num_features.find(element.image_id);
+      if (image == num_features.end() || element.point2D_idx >= image->second) {
         fail("point " + std::to_string(point3D_id) + " is seen by feature " +
              std::to_string(element.point2D_idx) + " of image " + std::to_string(element.image_id) +
              ", which does not exist");
@@ -93,7 +98,7 @@ void RecordPlace::Fail(const std::string& finding) const {
 }
 
 void AddCamera(const RecordPlace& place, uint32_t camera_id, int model_id, uint64_t width,
-               uint64_t height, std::vector<double> params, SparseModel* model) {
+               uint64_t height, std::vector<double> params, ModelBeingRead* read) {
   const std::string who = "camera " + std::to_string(camera_id);
   if (width == 0 || height == 0 || width > kMaxImageSide || height > kMaxImageSide) {
     place.Fail(who + " has an impossible size of " + std::to_string(width) + " x " +
@@ -111,13 +116,14 @@ void AddCamera(const RecordPlace& place, uint32_t camera_id, int model_id, uint6
   if (camera.FocalX() <= 0 || camera.FocalY() <= 0) {
     place.Fail(who + " has a focal length that is not positive");
   }
-  if (!model->cameras.emplace(camera_id, std::move(camera)).second) {
+  if (!read->model.cameras.emplace(camera_id, std::move(camera)).second) {
     place.Fail(who + " stands there twice");
   }
 }
 
-void AddImage(const RecordPlace& place, const Eigen::Vector4d& qvec, PosedImage image,
-              SparseModel* model) {
+void AddImage(const RecordPlace& place, const Eigen::Vector4d& qvec, PosedImage* read_image,
+              ModelBeingRead* read) {
+  PosedImage& image = *read_image;
   const std::string who = "image " + std::to_string(image.image_id);
   if (!IsSafeImageName(image.name)) {
     place.Fail(who + " is named '" + image.name +
@@ -131,15 +137,27 @@ void AddImage(const RecordPlace& place, const Eigen::Vector4d& qvec, PosedImage 
   for (const Eigen::Vector2d& point : image.points2D) {
     if (!point.allFinite()) place.Fail(who + " has a feature that is not finite");
   }
-  model->images.push_back(std::move(image));
+  read->num_features.push_back(image.points2D.size());
+  if (read->content == ModelContent::kAll) {
+    read->model.images.push_back(std::move(image));
+    return;
+  }
+  const std::vector<uint64_t>& ids = image.point3D_ids;
+  PosedImage kept{image.image_id, image.camera_id, image.name, image.cam_from_world, {}, {}};
+  const auto num_none = std::count(ids.begin(), ids.end(), kNoPoint3D);
+  kept.point3D_ids.reserve(ids.size() - static_cast<size_t>(num_none));
+  std::copy_if(ids.begin(), ids.end(), std::back_inserter(kept.point3D_ids),
+               [](uint64_t id) { return id != kNoPoint3D; });
+  read->model.images.push_back(std::move(kept));
 }
 
 void AddPoint(const RecordPlace& place, uint64_t point3D_id, SparsePoint point,
-              SparseModel* model) {
+              ModelBeingRead* read) {
   const std::string who = "point " + std::to_string(point3D_id);
   if (point3D_id == kNoPoint3D) place.Fail("a point has the id that means 'none'");
+  point.track.shrink_to_fit();
   if (!point.xyz.allFinite() || !std::isfinite(point.error)) place.Fail(who + " is not finite");
-  if (!model->points3D.emplace(point3D_id, std::move(point)).second) {
+  if (!read->model.points3D.emplace(point3D_id, std::move(point)).second) {
     place.Fail(who + " stands there twice");
   }
 }
@@ -170,17 +188,18 @@ bool IsSparseModel(const std::filesystem::path& dir) {
   return HasAllFiles(dir, ".bin") || HasAllFiles(dir, ".txt");
 }
 
-SparseModel ReadSparseModel(const std::filesystem::path& dir) {
-  SparseModel model;
+SparseModel ReadSparseModel(const std::filesystem::path& dir, ModelContent content) {
+  ModelBeingRead read;
+  read.content = content;
   if (HasAllFiles(dir, ".bin")) {
-    ReadModelBinary(dir, &model);
+    ReadModelBinary(dir, &read);
   } else if (HasAllFiles(dir, ".txt")) {
-    ReadModelText(dir, &model);
+    ReadModelText(dir, &read);
   } else {
     FailIncomplete(dir);
   }
-  CheckReferences(dir, model);
-  return model;
+  CheckReferences(dir, read);
+  return std::move(read.model);
 }
 
 }  // namespace colmap_seapoint

@@ -10,11 +10,21 @@
 
 namespace colmap_seapoint {
 
+// How much of a model is kept.
+enum class ModelContent {
+  kAll,
+  // What densification needs, in a third of the memory of a model with all its features: points2D
+  // stay empty, and point3D_ids are those of the triangulated features alone, in their order.
+  // Cannot be written again.
+  kPosesAndPoints,
+};
+
 // Reads cameras, images and points3D from `dir`; binary is preferred when both exist. Throws Error
 // naming the file and the byte or line for anything missing, truncated, inconsistent or not
 // finite, for camera models that FindCameraModel does not know, for image names that are absolute
 // or contain "..", and for point/image ids that point nowhere.
-SparseModel ReadSparseModel(const std::filesystem::path& dir);
+SparseModel ReadSparseModel(const std::filesystem::path& dir,
+                            ModelContent content = ModelContent::kAll);
 
 using Frame = std::vector<uint32_t>;  // image_ids
 

@@ -82,7 +82,7 @@ class BinaryReader {
   uint64_t offset_ = 0;
 };
 
-void ReadCameras(const std::filesystem::path& path, SparseModel* model) {
+void ReadCameras(const std::filesystem::path& path, ModelBeingRead* read) {
   BinaryReader reader(path);
   const uint64_t count = reader.ReadCount(24 + 3 * sizeof(double), "cameras");
   for (uint64_t i = 0; i < count; ++i) {
@@ -98,17 +98,19 @@ void ReadCameras(const std::filesystem::path& path, SparseModel* model) {
     }
     std::vector<double> params(static_cast<size_t>(info->num_params));
     reader.ReadBytes(params.data(), params.size() * sizeof(double));
-    AddCamera(place, camera_id, model_id, width, height, std::move(params), model);
+    AddCamera(place, camera_id, model_id, width, height, std::move(params), read);
   }
   reader.ExpectEnd();
 }
 
-void ReadImages(const std::filesystem::path& path, SparseModel* model) {
+void ReadImages(const std::filesystem::path& path, ModelBeingRead* read) {
   BinaryReader reader(path);
   const uint64_t count = reader.ReadCount(4 + 7 * sizeof(double) + 4 + 1 + 8, "images");
+  PosedImage image;
   for (uint64_t i = 0; i < count; ++i) {
     const RecordPlace place = reader.Place();
-    PosedImage image;
+    image.points2D.clear();
+    image.point3D_ids.clear();
     image.image_id = reader.Read<uint32_t>();
     Eigen::Vector4d qvec;
     reader.ReadBytes(qvec.data(), 4 * sizeof(double));
@@ -128,12 +130,12 @@ void ReadImages(const std::filesystem::path& path, SparseModel* model) {
       image.points2D.push_back(point);
       image.point3D_ids.push_back(point3D_id);
     }
-    AddImage(place, qvec, std::move(image), model);
+    AddImage(place, qvec, &image, read);
   }
   reader.ExpectEnd();
 }
 
-void ReadPoints(const std::filesystem::path& path, SparseModel* model) {
+void ReadPoints(const std::filesystem::path& path, ModelBeingRead* read) {
   BinaryReader reader(path);
   const uint64_t count = reader.ReadCount(8 + 3 * sizeof(double) + 3 + 8 + 8, "points");
   for (uint64_t i = 0; i < count; ++i) {
@@ -149,7 +151,7 @@ void ReadPoints(const std::filesystem::path& path, SparseModel* model) {
       element.image_id = reader.Read<uint32_t>();
       element.point2D_idx = reader.Read<uint32_t>();
     }
-    AddPoint(place, point3D_id, std::move(point), model);
+    AddPoint(place, point3D_id, std::move(point), read);
   }
   reader.ExpectEnd();
 }
@@ -205,10 +207,10 @@ void WritePoints(AtomicFile* file, const SparseModel& model) {
 
 }  // namespace
 
-void ReadModelBinary(const std::filesystem::path& dir, SparseModel* model) {
-  ReadCameras(dir / "cameras.bin", model);
-  ReadImages(dir / "images.bin", model);
-  ReadPoints(dir / "points3D.bin", model);
+void ReadModelBinary(const std::filesystem::path& dir, ModelBeingRead* read) {
+  ReadCameras(dir / "cameras.bin", read);
+  ReadImages(dir / "images.bin", read);
+  ReadPoints(dir / "points3D.bin", read);
 }
 
 std::vector<std::vector<uint64_t>> ReadFramesBinary(const std::filesystem::path& path) {

@@ -91,7 +91,7 @@ class WordReader {
   std::string_view rest_;
 };
 
-void ReadCameras(const std::filesystem::path& path, SparseModel* model) {
+void ReadCameras(const std::filesystem::path& path, ModelBeingRead* read) {
   LineReader lines(path);
   while (lines.NextRecord()) {
     const RecordPlace place = lines.Place();
@@ -112,7 +112,7 @@ void ReadCameras(const std::filesystem::path& path, SparseModel* model) {
                  " parameters, but " + name + " has " + std::to_string(info->num_params));
     }
     AddCamera(place, camera_id, static_cast<int>(info->model), width, height, std::move(params),
-              model);
+              read);
   }
 }
 
@@ -129,12 +129,14 @@ void ReadFeatures(const RecordPlace& place, std::string_view line, PosedImage* i
   }
 }
 
-void ReadImages(const std::filesystem::path& path, SparseModel* model) {
+void ReadImages(const std::filesystem::path& path, ModelBeingRead* read) {
   LineReader lines(path);
+  PosedImage image;
   while (lines.NextRecord()) {
     const RecordPlace place = lines.Place();
     WordReader words(place, lines.Line());
-    PosedImage image;
+    image.points2D.clear();
+    image.point3D_ids.clear();
     image.image_id = words.Number<uint32_t>("IMAGE_ID");
     Eigen::Vector4d qvec;
     for (int i = 0; i < 4; ++i) qvec[i] = words.Number<double>("QW, QX, QY, QZ");
@@ -144,11 +146,11 @@ void ReadImages(const std::filesystem::path& path, SparseModel* model) {
     image.camera_id = words.Number<uint32_t>("CAMERA_ID");
     image.name = std::string(words.Rest());
     if (lines.Next()) ReadFeatures(lines.Place(), lines.Line(), &image);
-    AddImage(place, qvec, std::move(image), model);
+    AddImage(place, qvec, &image, read);
   }
 }
 
-void ReadPoints(const std::filesystem::path& path, SparseModel* model) {
+void ReadPoints(const std::filesystem::path& path, ModelBeingRead* read) {
   LineReader lines(path);
   while (lines.NextRecord()) {
     const RecordPlace place = lines.Place();
@@ -163,7 +165,7 @@ void ReadPoints(const std::filesystem::path& path, SparseModel* model) {
       const auto point2D_idx = words.Number<uint32_t>("TRACK[] POINT2D_IDX");
       point.track.push_back({image_id, point2D_idx});
     }
-    AddPoint(place, point3D_id, std::move(point), model);
+    AddPoint(place, point3D_id, std::move(point), read);
   }
 }
 
@@ -231,10 +233,10 @@ void WritePoints(AtomicFile* file, const SparseModel& model) {
 
 }  // namespace
 
-void ReadModelText(const std::filesystem::path& dir, SparseModel* model) {
-  ReadCameras(dir / "cameras.txt", model);
-  ReadImages(dir / "images.txt", model);
-  ReadPoints(dir / "points3D.txt", model);
+void ReadModelText(const std::filesystem::path& dir, ModelBeingRead* read) {
+  ReadCameras(dir / "cameras.txt", read);
+  ReadImages(dir / "images.txt", read);
+  ReadPoints(dir / "points3D.txt", read);
 }
 
 std::vector<std::vector<uint64_t>> ReadFramesText(const std::filesystem::path& path) {

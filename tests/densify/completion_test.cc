@@ -193,7 +193,7 @@ TEST(SelectCompletionPartnerTest, ClosesAllButItsTarget) {
 // What failed is worth no pair of its own, and what failed twice is not tried along with others.
 TEST(GivenUpTest, AfterTwoFailures) {
   const View view = ViewAbove(0);
-  const std::vector<CloudFootprint> nothing;
+  const std::vector<PackedFootprint> nothing;
   GivenUp given_up;
   const CompletionCandidate candidate = {4, ViewAbove(0.3)};
   const auto look_at = [&](const View& at) {

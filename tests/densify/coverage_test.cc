@@ -95,7 +95,7 @@ TEST(ProjectCoverageTest, TheNearestSurfaceWins) {
   const Viewpoint view = Above(0, 0);
   const CloudFootprint near = FullFootprint(FlatWorld(1.5), view, kGrid);
   const CloudFootprint far = FullFootprint(FlatWorld(2.5), view, kGrid);
-  for (const auto& footprints : {std::vector<CloudFootprint>{near, far}, {far, near}}) {
+  for (const auto& footprints : {std::vector<PackedFootprint>{near, far}, {far, near}}) {
     const ViewCoverage coverage =
         ProjectCoverage(footprints, view.camera, view.cam_from_world, kGrid);
     for (size_t cell = 0; cell < kGrid.Size(); ++cell) {

@@ -95,6 +95,24 @@ TEST(ColmapModel, TextRoundTripIsExact) {
   ExpectSame(MakeModel(), ReadSparseModel(dir.Path()));
 }
 
+TEST(ColmapModel, PosesAndPointsAlone) {
+  const TempDir dir;
+  SparseModel expected = MakeModel();
+  bool any_dropped = false;
+  for (PosedImage& image : expected.images) {
+    image.points2D.clear();
+    auto& ids = image.point3D_ids;
+    const size_t before = ids.size();
+    ids.erase(std::remove(ids.begin(), ids.end(), kNoPoint3D), ids.end());
+    any_dropped = any_dropped || ids.size() < before;
+  }
+  ASSERT_TRUE(any_dropped);
+  WriteSparseModelBinary(dir / "binary", MakeModel());
+  ExpectSame(expected, ReadSparseModel(dir / "binary", ModelContent::kPosesAndPoints));
+  WriteSparseModelText(dir / "text", MakeModel());
+  ExpectSame(expected, ReadSparseModel(dir / "text", ModelContent::kPosesAndPoints));
+}
+
 TEST(ColmapModel, BinaryIsPreferred) {
   const TempDir dir;
   WriteSparseModelBinary(dir.Path(), MakeModel());
