@@ -17,7 +17,7 @@ PictureCache::PendingPicture PictureCache::Start(int image_idx, bool with_color)
     std::rotate(entry, entry + 1, pictures_.end());
     return pictures_.back().pending;
   }
-  if (pictures_.size() >= kMaxPictures) pictures_.pop_front();
+  if (pictures_.size() >= max_pictures_) pictures_.pop_front();
   PendingPicture pending = std::async(std::launch::async, [source = source_, image_idx,
                                                            with_color] {
                              auto picture = std::make_shared<Picture>();

@@ -22,7 +22,8 @@ struct Picture {
 
 class PictureCache {
  public:
-  explicit PictureCache(PictureSource* source) : source_(source) {}
+  PictureCache(PictureSource* source, size_t max_pictures)
+      : source_(source), max_pictures_(max_pictures) {}
 
   // nullptr when the picture cannot be read: the reason goes to LeftOut(), once. Of the second
   // picture of a pair only the grey values are needed: decoding them costs half.
@@ -44,7 +45,6 @@ class PictureCache {
 
  private:
   using PendingPicture = std::shared_future<std::shared_ptr<const Picture>>;
-  static constexpr size_t kMaxPictures = 5;
   static constexpr size_t kMaxFeatures = 32;
   static constexpr size_t kMaxMatches = 32;
 
@@ -60,6 +60,7 @@ class PictureCache {
   void LeaveOut(int image_idx, const std::string& reason);
 
   PictureSource* const source_;
+  const size_t max_pictures_;
   // Least recently used first.
   std::deque<Entry> pictures_;
   std::deque<std::pair<int, std::shared_ptr<const Features>>> features_;

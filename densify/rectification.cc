@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -181,12 +182,13 @@ RectPicture RectMap::Rectify(const GrayImage& source, const BlockMask& blocks,
   ParallelFor(num_threads, blocks.Rows(), [&](int64_t band) {
     const int row = static_cast<int>(band);
     const int j_end = std::min(window_.height, (row + 1) * BlockMask::kHeight);
-    std::vector<float> x(static_cast<size_t>(window_.width) + kRowSlack), y(x.size());
+    std::array<float, BlockMask::kWidth + kRowSlack> x, y;
     for (int column = 0; column < blocks.Columns(); ++column) {
       if (!blocks.Wanted(column, row)) continue;
       const int begin = column * BlockMask::kWidth;
-      while (column < blocks.Columns() && blocks.Wanted(column, row)) ++column;
-      const int end = std::min(window_.width, column * BlockMask::kWidth);
+      const int end = std::min(window_.width, begin + BlockMask::kWidth);
+      // Block by block: where the frame is turned against the picture, a row of it runs down
+      // columns of the picture, and the next row wants the same cache lines.
       for (int j = row * BlockMask::kHeight; j < j_end; ++j) {
         SourceRow(j, begin, end, x.data(), y.data());
         rectify::SampleRow(source, x.data(), y.data(), end - begin, picture.gray.Row(j) + begin);

@@ -15,6 +15,16 @@ namespace {
 constexpr int kMaxSecondTries = 4;       // pictures tried as the second one of a pair
 constexpr double kMinParallaxDeg = 1.0;  // ours: motion can be mere rotation
 
+// Five are in use around a pair; more serve the completion pass, which comes back to them.
+size_t CachedPictures(const SparseModel& model) {
+  constexpr double kMaxBytes = 384e6;
+  double pixels = 1;
+  for (const auto& [id, camera] : model.cameras) {
+    pixels = std::max(pixels, static_cast<double>(camera.width) * camera.height);
+  }
+  return std::max<size_t>(5, static_cast<size_t>(kMaxBytes / (4 * pixels)));
+}
+
 std::pair<int, int> Ordered(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
 }  // namespace
@@ -27,7 +37,7 @@ SequenceState::SequenceState(const SparseModel& model, std::vector<int> order, c
       options_(options),
       num_threads_(num_threads),
       callbacks_(callbacks),
-      cache_(source),
+      cache_(source, CachedPictures(model)),
       covisible_(CovisiblePictures(model, order_)) {
   std::vector<int> position_of(order_.size());
   for (int position = 0; position < NumPictures(); ++position) {
