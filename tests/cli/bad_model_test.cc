@@ -142,7 +142,7 @@ TEST_F(Densifier, PicturesThatAreNotThereAreLeftOut) {
   WriteStrip(folder_ / "images", kNumPictures);
   const std::string png = ReadBytes(folder_ / "images" / "img5.png");
   WriteBytes(folder_ / "images" / "img5.png", png.substr(0, png.size() / 2));
-  WriteImage(folder_ / "images" / "img1.png", ColorImage(64, 48, 3, 99));
+  WriteImage(folder_ / "images" / "img1.png", ColorImage(64, 40, 3, 99));  // other proportions
   result = Densify();
   EXPECT_EQ(result.exit_code, 3) << result.Text();
   EXPECT_EQ(LeftOut(), (std::set<std::string>{"img1.png", "img5.png"}));
