@@ -14,7 +14,6 @@ namespace {
 
 constexpr size_t kMaxCovisible = 12;
 constexpr double kMinGain = 0.01;  // share of a picture's cells that makes a pair worth it
-constexpr float kMinFilledCell = 0.9f;  // share of its samples that makes a cell covered
 constexpr double kMinParallaxDeg = 2;
 constexpr double kMaxParallaxDeg = 40;
 constexpr double kRimMargin = 0.01;  // of the partner's sides: no window fits nearer
@@ -217,7 +216,7 @@ void NoteFailures(const View& view, const CompletionTarget& target,
   const Rigid3d world_from_cam = view.cam_from_world.Inverse();
   CloudFootprint once, twice;
   for (size_t cell = 0; cell < grid.Size(); ++cell) {
-    if (target.closed[cell] || (!filled.empty() && filled[cell] >= kMinFilledCell)) continue;
+    if (target.closed[cell] || (!filled.empty() && filled[cell] >= kMinCoveredCell)) continue;
     const double range = seen->predicted_range[cell];
     const auto point = PointAt(view, world_from_cam, grid, cell, range);
     if (!point) continue;

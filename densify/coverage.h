@@ -13,6 +13,9 @@
 
 namespace colmap_seapoint {
 
+// Share of its samples that makes a cell covered.
+inline constexpr float kMinCoveredCell = 0.9f;
+
 // A picture's cells: distance from the camera centre to the surface that is reconstructed there;
 // 0 where nothing is.
 struct ViewCoverage {

@@ -57,21 +57,15 @@ class Task {
 
   const std::vector<Seed>& Seeds() const { return seeds_; }
 
-  bool IsClosed(size_t cell) const {
-    return !input_.in_full && !input_.closed.empty() && input_.closed[cell] != 0;
-  }
-  bool IsCovered(size_t cell) const {
-    return !input_.in_full && !input_.covered_range.empty() && input_.covered_range[cell] > 0;
-  }
+  bool IsClosed(size_t cell) const { return !input_.in_full && WasClosed(cell); }
+  bool IsCovered(size_t cell) const { return !input_.in_full && WasCovered(cell); }
   bool IsFree(size_t cell) const { return !IsClosed(cell) && !IsCovered(cell); }
 
   // Cells whose surface was not reconstructed before, in_full or not.
   std::vector<uint8_t> NewCells() const {
     std::vector<uint8_t> is_new(input_.cells.Size(), 1);
     for (size_t cell = 0; cell < is_new.size(); ++cell) {
-      const bool closed = !input_.closed.empty() && input_.closed[cell] != 0;
-      const bool covered = !input_.covered_range.empty() && input_.covered_range[cell] > 0;
-      is_new[cell] = !closed && !covered;
+      is_new[cell] = !WasClosed(cell) && !WasCovered(cell);
     }
     return is_new;
   }
@@ -137,6 +131,14 @@ class Task {
   }
 
  private:
+  // Before this pair, in_full or not.
+  bool WasClosed(size_t cell) const {
+    return !input_.closed.empty() && input_.closed[cell] != 0;
+  }
+  bool WasCovered(size_t cell) const {
+    return !input_.covered_range.empty() && input_.covered_range[cell] > 0;
+  }
+
   int MinDisparity() const { return static_cast<int>(0.9 * min_disparity_) - 16; }
   int MaxDisparity() const { return static_cast<int>(1.1 * max_disparity_) + 16; }
 
@@ -270,7 +272,8 @@ PairResult DensifyPair(const PairInput& input, const PartialDensificationOptions
   result.cloud = MakePartialCloud(surface, *geometry, map1, *input.color1, num_threads);
   result.cloud.image_idx1 = input.view1.image_idx;
   result.cloud.image_idx2 = input.view2.image_idx;
-  CellTally tally = TallyCells(surface, *geometry, nodes.gate.Nodes(), nodes.cell, input.cells, task.NewCells());
+  CellTally tally = TallyCells(surface, *geometry, nodes.gate.Nodes(), nodes.cell, input.cells,
+                               task.NewCells());
   result.filled = std::move(tally.filled);
   result.footprint = std::move(tally.footprint);
   return result;

@@ -11,8 +11,6 @@ namespace colmap_seapoint {
 
 namespace {
 
-constexpr float kMinFilledCell = 0.9f;
-
 const float* RowOf(const std::vector<float>& values, const SampleGrid& grid, int b) {
   return values.data() + static_cast<size_t>(b) * static_cast<size_t>(grid.width);
 }
@@ -137,7 +135,7 @@ CellTally TallyCells(const PartialSurface& surface, const PairGeometry& geometry
     const Sum& sum = sums[cell];
     if (sum.matched == 0) continue;
     tally.filled[cell] = static_cast<float>(sum.matched) / static_cast<float>(sum.all);
-    if (tally.filled[cell] < kMinFilledCell || !is_new[cell]) continue;
+    if (tally.filled[cell] < kMinCoveredCell || !is_new[cell]) continue;
     const Eigen::Vector3d mean = sum.point.cast<double>() / sum.matched;
     const Eigen::Vector3d center =
         geometry.PointInWorld(mean.x() / mean.z(), mean.y() / mean.z(), 1 / mean.z());

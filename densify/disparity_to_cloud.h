@@ -20,7 +20,7 @@ PartialCloud MakePartialCloud(const PartialSurface& surface, const PairGeometry&
 // nodes lies in, -1 outside the picture.
 struct CellTally {
   std::vector<float> filled;  // share of each cell's samples that hold surface, 0..1
-  CloudFootprint footprint;   // mean point of every new cell of which nine tenths are filled
+  CloudFootprint footprint;   // mean point of every new cell that is covered (kMinCoveredCell)
 };
 CellTally TallyCells(const PartialSurface& surface, const PairGeometry& geometry,
                      const SampleGrid& nodes, const std::vector<int>& cell_of_node,
