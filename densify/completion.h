@@ -50,7 +50,8 @@ struct CompletionView {
 CompletionView LookAt(const View& view, const CellGrid& cells,
                       const std::vector<PackedFootprint>& footprints, const GivenUp& given_up);
 
-// The pair that completes most, and the cells it is to leave alone: all others than those it is for.
+// The pair that completes most, and the cells it is to leave alone: all others than those it is
+// for.
 struct CompletionTarget {
   int partner = -1;  // position
   std::vector<uint8_t> closed;

@@ -9,11 +9,11 @@ namespace colmap_seapoint {
 
 namespace {
 
-constexpr float kMaxStep = 1.0f;   // disparity between neighbouring samples of one surface
-constexpr int kMinAgreeing = 3;    // of a sample's 8 neighbours
-constexpr int kMinSpeckSize = 12;  // nodes
+constexpr float kMaxStep = 1.0f;         // disparity between neighbouring samples of one surface
+constexpr int kMinAgreeing = 3;          // of a sample's 8 neighbours
+constexpr int kMinSpeckSize = 12;        // nodes
 constexpr double kMinParallax = 0.0175;  // a degree
-constexpr uint8_t kMinSupport = 6;  // samples of one surface, in a window of 25 or more
+constexpr uint8_t kMinSupport = 6;       // samples of one surface, in a window of 25 or more
 
 float SurfaceTolerance(const PartialDisparity& partial) {
   return kMaxStep * std::max(1.0f, 0.5f * static_cast<float>(partial.grid.step));
@@ -24,8 +24,8 @@ void Remove(size_t node, PartialDisparity* partial) {
   partial->score[node] = -1;
 }
 
-// Two samples of a row that land on the same place of picture 2 at different disparities cannot both
-// be right (one of them is occluded there): the better score stays. `owner` is lent.
+// Two samples of a row that land on the same place of picture 2 at different disparities cannot
+// both be right (one of them is occluded there): the better score stays. `owner` is lent.
 void RemoveDoubleClaims(int b, PartialDisparity* partial, std::vector<int>* owner) {
   const SampleGrid& grid = partial->grid;
   const float tolerance = 1.0f + SurfaceTolerance(*partial);
@@ -44,8 +44,8 @@ void RemoveDoubleClaims(int b, PartialDisparity* partial, std::vector<int>* owne
   const auto place = [&](int a) {
     return a + static_cast<int>((largest - disparity[a]) * scale + 0.5f);
   };
-  owner->assign(static_cast<size_t>(grid.width) + static_cast<size_t>((largest - smallest) * scale) +
-                    2, -1);
+  owner->assign(
+      static_cast<size_t>(grid.width) + static_cast<size_t>((largest - smallest) * scale) + 2, -1);
   for (int a = 0; a < grid.width; ++a) {
     if (disparity[a] <= 0) continue;
     int& holder = (*owner)[static_cast<size_t>(place(a))];

@@ -16,17 +16,17 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr double kSamplesPerPicture = 0.75e6;
-constexpr int kSamplesPerCell = 4;         // along each side
+constexpr int kSamplesPerCell = 4;          // along each side
 constexpr int kMinCell = 2 * kMinNodeStep;  // pixels: a cell holds nodes
 constexpr int kMaxFineStep = 2;             // samples farther apart: nodes are too
-constexpr double kMaxRowDifference = 2.0;  // between a seed's two rect rows, pixels
-constexpr int kMinWindow = 8;  // pixels: a smaller window of a picture holds nothing
+constexpr double kMaxRowDifference = 2.0;   // between a seed's two rect rows, pixels
+constexpr int kMinWindow = 8;               // pixels: a smaller window of a picture holds nothing
 // Growth only has to find the surface, at every node: what is weak is judged when it is refined.
 constexpr int kGrowthWindow = 7;      // pixels
 constexpr float kGrowthZncc = 0.85f;  // of min_zncc
 constexpr int kSmoothing = 4;         // pixels around a sample that its plane is fitted to
 constexpr float kMaxSlope = 0.75f;    // pixels of disparity a pixel, on one surface
-constexpr size_t kMinSeeds = 5;            // in new areas: fewer are not worth rectifying for
+constexpr size_t kMinSeeds = 5;       // in new areas: fewer are not worth rectifying for
 
 // A box of the rect plane.
 struct RectBox {
@@ -116,7 +116,8 @@ class Task {
     }
     const int reach = static_cast<int>(growth_) + margin;
     for (const Seed& seed : covered_seeds_) {
-      const int x = static_cast<int>(seed.x) - window1.x0, y = static_cast<int>(seed.y) - window1.y0;
+      const int x = static_cast<int>(seed.x) - window1.x0,
+                y = static_cast<int>(seed.y) - window1.y0;
       blocks1->Want(x - reach, y - reach, x + reach, y + reach);
     }
     const int shift = window1.x0 - window2.x0, down = window1.y0 - window2.y0;
@@ -132,9 +133,7 @@ class Task {
 
  private:
   // Before this pair, in_full or not.
-  bool WasClosed(size_t cell) const {
-    return !input_.closed.empty() && input_.closed[cell] != 0;
-  }
+  bool WasClosed(size_t cell) const { return !input_.closed.empty() && input_.closed[cell] != 0; }
   bool WasCovered(size_t cell) const {
     return !input_.covered_range.empty() && input_.covered_range[cell] > 0;
   }
@@ -272,8 +271,8 @@ PairResult DensifyPair(const PairInput& input, const PartialDensificationOptions
   result.cloud = MakePartialCloud(surface, *geometry, map1, *input.color1, num_threads);
   result.cloud.image_idx1 = input.view1.image_idx;
   result.cloud.image_idx2 = input.view2.image_idx;
-  CellTally tally = TallyCells(surface, *geometry, nodes.gate.Nodes(), nodes.cell, input.cells,
-                               task.NewCells());
+  CellTally tally =
+      TallyCells(surface, *geometry, nodes.gate.Nodes(), nodes.cell, input.cells, task.NewCells());
   result.filled = std::move(tally.filled);
   result.footprint = std::move(tally.footprint);
   return result;

@@ -35,8 +35,8 @@ struct ProcessedPicture {
 // `matches`: interpair matches, idx1 in the previous first picture, idx2 in the candidate. Areas
 // around PA matches are marked; then areas around REA matches are erased. `radius`: of an influence
 // area, pixels. Ours: an area ends where, carried back along its match, it leaves what is filled;
-// the paper's whole discs (those of an empty `filled`) close strips beyond the previous picture's rim
-// that no pair has seen.
+// the paper's whole discs (those of an empty `filled`) close strips beyond the previous picture's
+// rim that no pair has seen.
 InfluenceMask MakeInfluenceMask(const CellGrid& grid, const std::vector<SeaPoint>& candidate_points,
                                 const FeatureMatches& matches, const ProcessedPicture& previous,
                                 double radius);

@@ -16,7 +16,7 @@ constexpr int kUnmatched = -1;
 constexpr float kMinImprovement = 0.02f;  // that a colliding region needs to take a sample over
 constexpr int kSeedSearch = 2;            // pixels of disparity around a seed's own
 constexpr int kMaxSearch = kMaxNodeStep / 2;
-constexpr int64_t kChunk = 128;           // nodes a task
+constexpr int64_t kChunk = 128;  // nodes a task
 
 struct Candidate {
   int disparity = kUnmatched;
@@ -46,7 +46,8 @@ class WindowMatcher {
   // in picture 2. The one of picture 1 must fit.
   void ScoreRun(int i, int j, int first, int count, float* scores) const {
     std::fill_n(scores, count, -1.0f);
-    const int origin = i + column_shift_, j2 = j + row_shift_;  // column in picture 2 at disparity 0
+    const int origin = i + column_shift_,
+              j2 = j + row_shift_;  // column in picture 2 at disparity 0
     const int low = std::max({first, 1, origin + half_ + 1 - picture2_.window.width});
     const int high = std::min(first + count - 1, origin - half_);
     if (low > high || !InRaster(picture2_, origin - low, j2)) return;

@@ -68,7 +68,8 @@ class BlockMask {
 
 struct RectPicture {
   RectWindow window;
-  GrayImage gray;  // as large as the window; 0 outside the picture and where not wanted, else 1..255
+  GrayImage
+      gray;  // as large as the window; 0 outside the picture and where not wanted, else 1..255
 
   // Bytes behind the last pixel that may be read (vectors reach beyond a window).
   static constexpr size_t kSlack = 16;
