@@ -105,6 +105,17 @@ double MedianParallaxDeg(const SparseModel& model, const PosedImage& image1,
   return angles[angles.size() / 2];
 }
 
+double SharedShare(const SparseModel& model, const PosedImage& image, const View& other) {
+  int64_t all = 0, shared = 0;
+  for (const uint64_t id : image.point3D_ids) {
+    if (id == kNoPoint3D) continue;
+    ++all;
+    const auto pixel = other.camera.ImgFromCam(other.cam_from_world * model.points3D.at(id).xyz);
+    shared += pixel && other.camera.InImage(*pixel);
+  }
+  return all == 0 ? 0 : static_cast<double>(shared) / static_cast<double>(all);
+}
+
 std::vector<double> PredictRanges(const SparseModel& model, const PosedImage& image,
                                   const View& view, const ViewCoverage& coverage) {
   const CellGrid& grid = coverage.grid;
@@ -198,9 +209,7 @@ std::vector<PixelPair> SeedsAlongRim(const View& view, const View& partner,
   for (size_t cell = 0; cell < grid.Size(); ++cell) {
     if (seen.coverage.range[cell] > 0 || seen.predicted_range[cell] <= 0) continue;
     bool on_rim = false;
-    ForEachNeighbor(grid, cell, [&](size_t to) {
-      on_rim = on_rim || seen.coverage.range[to] > 0;
-    });
+    ForEachNeighbor(grid, cell, [&](size_t to) { on_rim = on_rim || seen.coverage.range[to] > 0; });
     if (!on_rim) continue;
     const auto point = PointAt(view, world_from_cam, grid, cell, seen.predicted_range[cell]);
     if (!point || !SeesWell(partner, *point)) continue;
@@ -219,14 +228,14 @@ void NoteFailures(const View& view, const CompletionTarget& target,
     if (target.closed[cell] || (!filled.empty() && filled[cell] >= kMinCoveredCell)) continue;
     const double range = seen->predicted_range[cell];
     const auto point = PointAt(view, world_from_cam, grid, cell, range);
-    if (!point) continue;
+    if (!point || !SeesWell(view, *point)) continue;
     const double size = grid.cell * range / view.camera.MeanFocal();
     CloudFootprint& footprint = seen->tries[cell] == 0 ? once : twice;
     footprint.patches.push_back({point->cast<float>(), static_cast<float>(size)});
     ++seen->tries[cell];
   }
-  for (auto [footprint, all] : {std::pair(&once, &given_up->once),
-                                std::pair(&twice, &given_up->twice)}) {
+  for (auto [footprint, all] :
+       {std::pair(&once, &given_up->once), std::pair(&twice, &given_up->twice)}) {
     if (footprint->patches.empty()) continue;
     footprint->UpdateSphere();
     all->emplace_back(*footprint);

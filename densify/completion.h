@@ -21,6 +21,9 @@ std::vector<std::vector<int>> CovisiblePictures(const SparseModel& model,
 double MedianParallaxDeg(const SparseModel& model, const PosedImage& image1,
                          const PosedImage& image2);
 
+// Share of the points that a picture sees which project into another; 0 when it sees none.
+double SharedShare(const SparseModel& model, const PosedImage& image, const View& other);
+
 struct CompletionCandidate {
   int position;
   View view;

@@ -29,9 +29,10 @@ class SequenceState {
 
   // Whether another picture follows on the track, or `first` has a simultaneous one.
   bool CanStartPair(int first) const;
-  // The picture that completes the pair of `first`: its simultaneous right one (paper 4); else the
-  // next one, unless the motion is too small (paper 2.6). NumPictures() when there is none:
-  // reported as skipped.
+  // The picture that completes the pair of `first`: its simultaneous right one (paper 4); else, of
+  // those that follow, the next one with enough motion (paper 2.6) or, with a completion pass
+  // (ours), the one with the widest baseline of those that see most of the same. NumPictures() when
+  // there is none: reported as skipped.
   int SelectSecond(int first);
   // Overlap, labels, seeds, propagation, reprojection (paper 2.5 to 2.7).
   void DensifyNewAreas(int first, int second);
@@ -51,6 +52,11 @@ class SequenceState {
     double rate = 0;
   };
 
+  struct SecondCandidate {
+    int position;
+    double parallax_deg;  // median, of the points shared with the first picture
+  };
+
   View ViewAt(int position) const;
   const PosedImage& ImageAt(int position) const;
   int ImageIdxAt(int position) const { return order_[static_cast<size_t>(position)]; }
@@ -60,6 +66,7 @@ class SequenceState {
 
   std::shared_ptr<const Features> SeaPointsAt(int position);
   std::shared_ptr<const FeatureMatches> MatchesOf(int position1, int position2);
+  std::vector<SecondCandidate> SecondCandidates(int first) const;  // best first
   double InterpairOverlap(int first, int candidate);
   Overlap AssessOverlap(int first);
   std::vector<PixelPair> SeedsFromMatches(int first, int second,
@@ -83,7 +90,7 @@ class SequenceState {
   int previous_first_ = -1;
   ProcessedPicture previous_;  // of previous_first_
   std::vector<PackedFootprint> footprints_;
-  GivenUp given_up_;  // by the completion pass
+  GivenUp given_up_;                               // by the completion pass
   std::set<std::pair<int, int>> densified_pairs_;  // positions, smaller first
   std::vector<std::vector<int>> covisible_;  // position -> positions, most shared points first
   SequenceReport report_;

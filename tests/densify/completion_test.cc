@@ -215,10 +215,45 @@ TEST(GivenUpTest, AfterTwoFailures) {
   EXPECT_GT(num_given_up, static_cast<int>(kGrid.Size() / 2));
 }
 
+// Windows do not fit at a picture's own edge; a neighbour may well see that surface in its middle.
+TEST(CompletionTest, SurfaceAtThePicturesEdgeIsNotGivenUp) {
+  const View view = ViewAbove(0);
+  const CellGrid fine(400, 300, 4);
+  CompletionView seen;
+  seen.coverage = {fine, std::vector<float>(fine.Size(), 0)};
+  seen.predicted_range.assign(fine.Size(), kDepth);
+  seen.tries.assign(fine.Size(), 0);
+  GivenUp given_up;
+  NoteFailures(view, {4, std::vector<uint8_t>(fine.Size(), 0)}, {}, &seen, &given_up);
+  for (size_t cell = 0; cell < fine.Size(); ++cell) {
+    const Eigen::Vector2d center = fine.Center(cell);
+    const bool inner = center.x() >= 4 && center.x() <= 396 && center.y() >= 3 && center.y() <= 297;
+    ASSERT_EQ(seen.tries[cell], inner ? 1 : 0) << center.transpose();
+  }
+}
+
+TEST(SharedShareTest, CountsThePointsThatProjectIntoTheOther) {
+  SparseModel model;
+  PosedImage image;
+  const View view = ViewAbove(0);
+  for (uint64_t id = 1; id <= 10; ++id) {  // x of the pixel: 5, 45, 85 ...
+    SparsePoint point;
+    point.xyz = {(40.0 * static_cast<double>(id) - 35 - 200) * kDepth / 400, 0, kDepth};
+    model.points3D[id] = point;
+    image.point3D_ids.push_back(id);
+  }
+  image.point3D_ids.push_back(kNoPoint3D);
+  EXPECT_EQ(SharedShare(model, image, view), 1);
+  EXPECT_EQ(SharedShare(model, image, ViewAbove(0.5)), 0.7);  // moved by 100 pixels
+  EXPECT_EQ(SharedShare(model, image, ViewAbove(5)), 0);
+  EXPECT_EQ(SharedShare(model, PosedImage(), view), 0);
+}
+
 TEST(SeedsAlongRimTest, OnePerOpenCellBesideACoveredOne) {
   const View view = ViewAbove(0), partner = ViewAbove(0.3);
   const ViewCoverage coverage = LeftHalfCovered(view, kGrid);
-  const std::vector<PixelPair> seeds = SeedsAlongRim(view, partner, SeenAs(coverage, TrueRanges(view)));
+  const std::vector<PixelPair> seeds =
+      SeedsAlongRim(view, partner, SeenAs(coverage, TrueRanges(view)));
   ASSERT_EQ(seeds.size(), 30u);  // column 20, all rows
   for (const PixelPair& seed : seeds) {
     EXPECT_EQ(seed.pixel1.x(), 205);

@@ -122,9 +122,20 @@ TEST(DensifySequenceTest, ReportAddsUp) {
   EXPECT_EQ(sum, outcome.report.num_points);
   // In the order of the names: the last image of the model is the first of the strip.
   EXPECT_EQ(outcome.report.pairs[0].image_idx1, kNumPictures - 1);
-  EXPECT_EQ(outcome.report.pairs[0].image_idx2, kNumPictures - 2);
   EXPECT_EQ(outcome.report.pairs[0].overlap, 0);
   EXPECT_EQ(outcome.report.pairs[0].num_oa, 0);
+}
+
+// The one after the next shows just over 60 % of the first picture, with twice the baseline.
+TEST(DensifySequenceTest, WideBaselineWhereCompletionComesBackForTheRest) {
+  Strip& strip = TestStrip();
+  PartialDensificationOptions options;
+  EXPECT_EQ(Densify(&strip, options).report.pairs[0].image_idx2, kNumPictures - 3);
+  options.completion = false;
+  EXPECT_EQ(Densify(&strip, options).report.pairs[0].image_idx2, kNumPictures - 2);
+  options.completion = true;
+  options.redundancy = "sequential";
+  EXPECT_EQ(Densify(&strip, options).report.pairs[0].image_idx2, kNumPictures - 2);
 }
 
 TEST(DensifySequenceTest, SameCloudsWithAnyNumberOfThreads) {
