@@ -11,6 +11,18 @@ namespace {
 struct ViewCone {
   bool is_all = false;          // for pictures that see more than 80 degrees aside
   double sine = 0, cosine = 0;  // of its half-angle
+
+  // Whether a sphere reaches into it. Asked for every footprint of the survey, for every picture,
+  // and for every patch of those that it holds for: no more than a square root.
+  bool Touches(const Eigen::Vector3d& center, double radius) const {
+    if (is_all) return true;
+    const double aside = center.head<2>().norm();
+    if (center.squaredNorm() <= radius * radius) return true;
+    // Along and away from the straight line of the cone that is nearest to the sphere's centre.
+    const double along = aside * sine + center.z() * cosine;
+    const double away = aside * cosine - center.z() * sine;
+    return along >= 0 && away <= radius;
+  }
 };
 
 ViewCone ViewConeOf(const Camera& camera) {
@@ -26,22 +38,8 @@ ViewCone ViewConeOf(const Camera& camera) {
   return {false, std::sin(1.05 * angle), std::cos(1.05 * angle)};
 }
 
-// Asked for every footprint of the survey, for every picture: no more than a square root.
-bool MayBeInView(const PackedFootprint& footprint, const Rigid3d& cam_from_world,
-                 const ViewCone& cone) {
-  if (cone.is_all) return true;
-  const Eigen::Vector3d center = cam_from_world * footprint.Center().cast<double>();
-  const double radius = footprint.Radius(), aside = center.head<2>().norm();
-  if (center.squaredNorm() <= radius * radius) return true;
-  // Along and away from the straight line of the cone that is nearest to the sphere's centre.
-  const double along = aside * cone.sine + center.z() * cone.cosine;
-  const double away = aside * cone.cosine - center.z() * cone.sine;
-  return along >= 0 && away <= radius;
-}
-
-void MarkPatch(const SurfacePatch& patch, const Camera& camera, const Rigid3d& cam_from_world,
+void MarkPatch(const Eigen::Vector3d& in_cam, const SurfacePatch& patch, const Camera& camera,
                ViewCoverage* coverage) {
-  const Eigen::Vector3d in_cam = cam_from_world * patch.center.cast<double>();
   const auto pixel = camera.ImgFromCam(in_cam);
   if (!pixel) return;
   const CellGrid& grid = coverage->grid;
@@ -77,7 +75,8 @@ ViewCoverage ProjectCoverage(const std::vector<PackedFootprint>& footprints, con
   ViewCoverage coverage{grid, std::vector<float>(grid.Size(), 0)};
   const ViewCone cone = ViewConeOf(camera);
   for (const PackedFootprint& footprint : footprints) {
-    if (footprint.NumPatches() == 0 || !MayBeInView(footprint, cam_from_world, cone)) continue;
+    const Eigen::Vector3d center = cam_from_world * footprint.Center().cast<double>();
+    if (footprint.NumPatches() == 0 || !cone.Touches(center, footprint.Radius())) continue;
     AddCoverage(footprint, camera, cam_from_world, &coverage);
   }
   return coverage;
@@ -85,8 +84,13 @@ ViewCoverage ProjectCoverage(const std::vector<PackedFootprint>& footprints, con
 
 void AddCoverage(const PackedFootprint& footprint, const Camera& camera,
                  const Rigid3d& cam_from_world, ViewCoverage* coverage) {
-  footprint.ForEach(
-      [&](const SurfacePatch& patch) { MarkPatch(patch, camera, cam_from_world, coverage); });
+  const ViewCone cone = ViewConeOf(camera);
+  const Eigen::Matrix3d rotation = cam_from_world.rotation.toRotationMatrix();
+  footprint.ForEach([&](const SurfacePatch& patch) {
+    const Eigen::Vector3d in_cam =
+        rotation * patch.center.cast<double>() + cam_from_world.translation;
+    if (cone.Touches(in_cam, patch.size)) MarkPatch(in_cam, patch, camera, coverage);
+  });
 }
 
 }  // namespace colmap_seapoint

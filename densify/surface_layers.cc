@@ -8,6 +8,9 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr int kMinNodes = 3;
+// A sample beside the known nodes is predicted from one node farther, the rest of its window from
+// as many more as it is wide.
+constexpr int kRings = 2 + (tile::kMaxWindow / 2 + kMinNodeStep - 1) / kMinNodeStep;
 
 bool& At(NodeMarks* marks, int u, int v) {
   return (*marks)[static_cast<size_t>(v)][static_cast<size_t>(u)];
@@ -76,33 +79,45 @@ int Gather(const TileNodes& tile, int u, int v, NodeMarks* seen, NodeMarks* laye
   return count;
 }
 
-// One ring farther: each node beside known ones continues their slope; false when none was left.
-bool ContinueByARing(int nodes_x, int nodes_y, tile::Prediction* surface, NodeMarks* known) {
-  const NodeMarks before = *known;
-  bool any = false;
-  for (int v = 0; v < nodes_y; ++v) {
-    for (int u = 0; u < nodes_x; ++u) {
-      if (At(before, u, v)) continue;
-      float sum = 0;
-      int count = 0;
-      for (int y = std::max(0, v - 1); y <= std::min(nodes_y - 1, v + 1); ++y) {
-        for (int x = std::max(0, u - 1); x <= std::min(nodes_x - 1, u + 1); ++x) {
-          if (!At(before, x, y)) continue;
-          float value = At(*surface, x, y);
-          const int x2 = 2 * x - u, y2 = 2 * y - v;  // the node beyond
-          if (x2 >= 0 && y2 >= 0 && x2 < nodes_x && y2 < nodes_y && At(before, x2, y2)) {
-            value += value - At(*surface, x2, y2);
-          }
-          sum += value;
-          ++count;
-        }
+// The mean of what the nodes beside (u, v) and their slopes expect there; false when none is known.
+bool ContinueTo(int u, int v, const TileNodes& tile, const NodeMarks& known,
+                tile::Prediction* surface) {
+  float sum = 0;
+  int count = 0;
+  for (int y = std::max(0, v - 1); y <= std::min(tile.nodes_y - 1, v + 1); ++y) {
+    for (int x = std::max(0, u - 1); x <= std::min(tile.nodes_x - 1, u + 1); ++x) {
+      if (!At(known, x, y)) continue;
+      float value = At(*surface, x, y);
+      const int x2 = 2 * x - u, y2 = 2 * y - v;  // the node beyond
+      if (x2 >= 0 && y2 >= 0 && x2 < tile.nodes_x && y2 < tile.nodes_y && At(known, x2, y2)) {
+        value += value - At(*surface, x2, y2);
       }
-      if (count == 0) continue;
-      At(surface, u, v) = sum / static_cast<float>(count);
-      At(known, u, v) = any = true;
+      sum += value;
+      ++count;
     }
   }
-  return any;
+  if (count > 0) At(surface, u, v) = sum / static_cast<float>(count);
+  return count > 0;
+}
+
+// Each ring of nodes around the known ones continues the slope of the ring before.
+void Continue(const TileNodes& tile, NodeMarks known, tile::Prediction* surface) {
+  std::array<std::array<int, 2>, tile::kNodesX * tile::kNodesY> unknown, ring;
+  size_t num_unknown = 0;
+  for (int v = 0; v < tile.nodes_y; ++v) {
+    for (int u = 0; u < tile.nodes_x; ++u) {
+      if (!At(known, u, v)) unknown[num_unknown++] = {u, v};
+    }
+  }
+  for (int i = 0; i < kRings && num_unknown > 0; ++i) {
+    size_t num_ring = 0, num_left = 0;
+    for (size_t n = 0; n < num_unknown; ++n) {
+      const auto [u, v] = unknown[n];
+      (ContinueTo(u, v, tile, known, surface) ? ring[num_ring++] : unknown[num_left++]) = {u, v};
+    }
+    for (size_t n = 0; n < num_ring; ++n) At(&known, ring[n][0], ring[n][1]) = true;
+    num_unknown = num_left;
+  }
 }
 
 SurfaceLayer MakeLayer(const TileNodes& tile, const NodeMarks& nodes) {
@@ -121,9 +136,7 @@ SurfaceLayer MakeLayer(const TileNodes& tile, const NodeMarks& nodes) {
       layer.v1 = std::max(layer.v1, v + 1);
     }
   }
-  NodeMarks known = nodes;
-  while (ContinueByARing(tile.nodes_x, tile.nodes_y, &layer.surface, &known)) {
-  }
+  Continue(tile, nodes, &layer.surface);
   return layer;
 }
 

@@ -15,7 +15,7 @@ inline constexpr float kMaxLayerSlope = 1.2f;  // pixels of disparity a pixel, o
 using NodeMarks = std::array<std::array<bool, tile::kNodesX>, tile::kNodesY>;
 
 struct SurfaceLayer {
-  tile::Prediction surface;  // continued over the whole tile
+  tile::Prediction surface;  // continued as far as windows around `near` reach
   NodeMarks near;            // the tile's own nodes that it may fill: open, on it or beside it
   int u0, v0, u1, v1;        // a box around these, u1 and v1 one beyond
 };

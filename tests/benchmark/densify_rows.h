@@ -32,9 +32,9 @@ struct DensifyRow {
   std::string set, variant;
   double pictures = 0, megapixels = 0, threads = 0;
   double cpu = 0, wall = 0;                   // seconds, of densification alone
-  double match_cpu = 0;                       // of it in matching SeaPoints
   double rectification = 0, propagation = 0;  // of it, wall seconds summed over the pairs
   double seapoint_cpu = kNotMeasured;  // to find and describe SeaPoints; in none of the above
+  double match_cpu = 0;                // to match those that no database has; in none of the above
   double memory_mb = kNotMeasured;     // peak above what was held before (pictures in memory)
   double pairs = 0, completion_pairs = 0, passed_over = 0;
   double same_pairs = kNotMeasured;    // share of the baseline's pairs that it has too

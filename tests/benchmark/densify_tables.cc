@@ -14,9 +14,9 @@ Variants: `sequential` reconstructs only what the previous pair has not
 each in full. `all` leaves out what any earlier pair has reconstructed and adds the completion pass,
 `complete_all` is its complete form. Ratios: partial over complete. Shares are in percent.
 
-- CPU: user + sys seconds of densification alone; pictures are decoded, SeaPoints found and
-  described beforehand (their own column). Wall: of the same. A pair: wall, median over the pairs
-  after the first.
+- CPU: user + sys seconds of densification alone; pictures are decoded, SeaPoints found, described
+  and matched beforehand (columns of their own), as they are in the chain's database. Wall: of the
+  same. A pair: wall, median over the pairs after the first.
 - truly new: of the area that the pairs see, the share that the previous pair (`all`: any earlier
   pair) did not see, by the survey's truth; over all pairs: the floor of the CPU ratio. In brackets:
   mean over the pairs after the first. 1 - overlap: as the program estimates it, after the first.
@@ -147,14 +147,14 @@ std::string TruthTable(const std::vector<DensifyRow>& rows) {
 }
 
 std::string StageTable(const std::vector<DensifyRow>& rows) {
-  std::string table = Head(
-      "Stages", {"set", "variant", "CPU s", "matching, CPU s", "rectification, s", "propagation, s",
-                 "SeaPoints, CPU s (not in CPU s)", "memory, MB", "threads"});
+  std::string table = Head("Stages", {"set", "variant", "CPU s", "rectification, s",
+                                      "propagation, s", "SeaPoints, CPU s (not in CPU s)",
+                                      "matching, CPU s (not in CPU s)", "memory, MB", "threads"});
   for (const DensifyRow& row : rows) {
-    table += Line({row.set, row.variant, Text(row.cpu, "%.2f"), Text(row.match_cpu, "%.2f"),
-                   Text(row.rectification, "%.2f"), Text(row.propagation, "%.2f"),
-                   Text(row.seapoint_cpu, "%.2f"), Text(row.memory_mb, "%.0f"),
-                   Text(row.threads, "%.0f")});
+    table +=
+        Line({row.set, row.variant, Text(row.cpu, "%.2f"), Text(row.rectification, "%.2f"),
+              Text(row.propagation, "%.2f"), Text(row.seapoint_cpu, "%.2f"),
+              Text(row.match_cpu, "%.2f"), Text(row.memory_mb, "%.0f"), Text(row.threads, "%.0f")});
   }
   return table;
 }

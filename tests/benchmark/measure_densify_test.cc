@@ -64,7 +64,6 @@ TEST_F(MeasureDensifyTest, PartialIsMeasuredAgainstComplete) {
     EXPECT_GT(row.cpu, 0);
     EXPECT_GT(row.seapoint_cpu, 0);
     EXPECT_GT(row.match_cpu, 0);
-    EXPECT_LT(row.match_cpu, row.cpu);
     EXPECT_GE(row.pairs, 2);
     EXPECT_EQ(row.completion_pairs, 0);
     EXPECT_GT(row.coverage_4gsd, 0.6);
