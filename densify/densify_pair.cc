@@ -245,8 +245,8 @@ PairResult DensifyPair(const PairInput& input, const PartialDensificationOptions
   const GatedNodes nodes = MakeGate(input, task, *geometry, map1, window1, node_step);
   BlockMask blocks1(window1), blocks2(window2);
   task.WantBlocks(nodes.gate, window1, window2, margin, &blocks1, &blocks2);
-  const RectPicture picture1 = map1.Rectify(*input.gray1, blocks1, num_threads);
-  const RectPicture picture2 = map2.Rectify(*input.gray2, blocks2, num_threads);
+  const RectPicture picture1 = map1.Rectify(input.picture1->luma, blocks1, num_threads);
+  const RectPicture picture2 = map2.Rectify(*input.luma2, blocks2, num_threads);
   PairResult result;
   result.rectification_seconds = rectification_timer.WallSeconds();
 
@@ -268,7 +268,7 @@ PairResult DensifyPair(const PairInput& input, const PartialDensificationOptions
 
   result.num_seeds = static_cast<int>(task.Seeds().size());
   result.num_failed_seeds = coarse.num_failed_seeds;
-  result.cloud = MakePartialCloud(surface, *geometry, map1, *input.color1, num_threads);
+  result.cloud = MakePartialCloud(surface, *geometry, map1, *input.picture1, num_threads);
   result.cloud.image_idx1 = input.view1.image_idx;
   result.cloud.image_idx2 = input.view2.image_idx;
   CellTally tally =

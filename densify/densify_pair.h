@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "colmap_seapoint/base/camera.h"
-#include "colmap_seapoint/base/image.h"
+#include "colmap_seapoint/base/picture.h"
 #include "colmap_seapoint/base/rigid3.h"
 #include "densify/coverage.h"
 #include "densify/partial_cloud.h"
@@ -28,9 +28,8 @@ struct PixelPair {
 
 struct PairInput {
   View view1, view2;
-  const ColorImage* color1 = nullptr;
-  const GrayImage* gray1 = nullptr;
-  const GrayImage* gray2 = nullptr;
+  const Picture* picture1 = nullptr;
+  const GrayImage* luma2 = nullptr;
   std::vector<PixelPair> seeds;
   // Cells of picture 1 that are not to be reconstructed again: closed (paper: the overlap mask), or
   // covered at a known range (ours), where only what differs is. Either may be empty.

@@ -4,7 +4,6 @@
 #include <numeric>
 
 #include "colmap_seapoint/base/natural_order.h"
-#include "densify/gray_kernels.h"
 #include "densify/sequence_state.h"
 
 namespace colmap_seapoint {
@@ -31,8 +30,6 @@ std::vector<int> TrackFirst(std::vector<int> order, const StereoRig& rig) {
 }
 
 }  // namespace
-
-GrayImage PictureSource::ReadGray(int image_idx) { return GrayOfColor(ReadColor(image_idx)); }
 
 SequenceReport DensifySequence(const SparseModel& model, PictureSource* source,
                                const PartialDensificationOptions& options, int num_threads,

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "colmap_seapoint/base/features.h"
-#include "colmap_seapoint/base/image.h"
+#include "colmap_seapoint/base/picture.h"
 #include "colmap_seapoint/base/sparse_model.h"
 #include "densify/partial_cloud.h"
 #include "densify/partial_densification_options.h"
@@ -23,8 +23,9 @@ class PictureSource {
   virtual ~PictureSource() = default;
   // Throws Error for a picture that is missing, unreadable or of another size than its camera.
   // Called from several threads at once; the others are not.
-  virtual ColorImage ReadColor(int image_idx) = 0;
-  virtual GrayImage ReadGray(int image_idx);  // unless overridden, of the colours
+  virtual Picture ReadPicture(int image_idx) = 0;
+  // The same luma, where it can be had for less without the colours.
+  virtual GrayImage ReadLuma(int image_idx) { return ReadPicture(image_idx).luma; }
   // nullopt: none are stored. Throws Error for damaged ones.
   virtual std::optional<Features> ReadSeaPoints(int image_idx) = 0;
   virtual Features FindSeaPoints(const GrayImage& picture) = 0;

@@ -15,21 +15,20 @@ const float* RowOf(const std::vector<float>& values, const SampleGrid& grid, int
   return values.data() + static_cast<size_t>(b) * static_cast<size_t>(grid.width);
 }
 
-std::array<uint8_t, 3> ColorAt(const ColorImage& color, float x, float y) {
-  const int column = std::clamp(static_cast<int>(x), 0, color.width - 1);
-  const int row = std::clamp(static_cast<int>(y), 0, color.height - 1);
-  const uint8_t* rgb = color.Row(row) + 3 * static_cast<size_t>(column);
-  return {rgb[0], rgb[1], rgb[2]};
+// Of the pixel that the place lies in, or the nearest one.
+std::array<uint8_t, 3> ColorNear(const Picture& picture, float x, float y) {
+  return ColorAt(picture, std::clamp(static_cast<int>(x), 0, picture.luma.width - 1),
+                 std::clamp(static_cast<int>(y), 0, picture.luma.height - 1));
 }
 
 // The points of one row of samples.
 class RowToPoints {
  public:
   RowToPoints(const PartialSurface& surface, const PairGeometry& geometry, const RectMap& map1,
-              const ColorImage& color1)
+              const Picture& picture1)
       : surface_(surface),
         map1_(map1),
-        color1_(color1),
+        picture1_(picture1),
         focal_(static_cast<float>(geometry.focal)),
         focal_baseline_(static_cast<float>(geometry.focal * geometry.baseline)),
         world_from_rect_(geometry.world_from_rect.cast<float>()),
@@ -57,7 +56,7 @@ class RowToPoints {
       point.xyz = (center1_ + (focal_baseline_ / d * ray).cast<double>()).cast<float>();
       point.normal = Normal(rect_x, rect_y, d, slope_x[a], slope_y[a], ray);
       const size_t pixel = static_cast<size_t>(grid.PixelX(a));
-      point.rgb = ColorAt(color1_, x_[pixel], y_[pixel]);
+      point.rgb = ColorNear(picture1_, x_[pixel], y_[pixel]);
     }
   }
 
@@ -74,7 +73,7 @@ class RowToPoints {
 
   const PartialSurface& surface_;
   const RectMap& map1_;
-  const ColorImage& color1_;
+  const Picture& picture1_;
   const float focal_, focal_baseline_;
   const Eigen::Matrix3f world_from_rect_;
   const Eigen::Vector3d center1_;
@@ -84,7 +83,7 @@ class RowToPoints {
 }  // namespace
 
 PartialCloud MakePartialCloud(const PartialSurface& surface, const PairGeometry& geometry,
-                              const RectMap& map1, const ColorImage& color1, int num_threads) {
+                              const RectMap& map1, const Picture& picture1, int num_threads) {
   const SampleGrid& grid = surface.grid;
   std::vector<size_t> first_of_row(static_cast<size_t>(grid.height) + 1, 0);
   for (int b = 0; b < grid.height; ++b) {
@@ -97,7 +96,7 @@ PartialCloud MakePartialCloud(const PartialSurface& surface, const PairGeometry&
   cloud.points.resize(first_of_row.back());
   constexpr int kBand = 16;  // rows a task
   ParallelFor(num_threads, (grid.height + kBand - 1) / kBand, [&](int64_t band) {
-    RowToPoints row_to_points(surface, geometry, map1, color1);
+    RowToPoints row_to_points(surface, geometry, map1, picture1);
     const int begin = static_cast<int>(band) * kBand, end = std::min(grid.height, begin + kBand);
     for (int b = begin; b < end; ++b) {
       row_to_points.Run(b, cloud.points.data() + first_of_row[static_cast<size_t>(b)]);

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "colmap_seapoint/base/image.h"
+#include "colmap_seapoint/base/picture.h"
 #include "densify/coverage.h"
 #include "densify/partial_cloud.h"
 #include "densify/rectification.h"
@@ -14,7 +14,7 @@ namespace colmap_seapoint {
 // One point a sample of the surface, in raster order of the samples; normals from its slopes
 // (towards the camera where it has none), colours of picture 1.
 PartialCloud MakePartialCloud(const PartialSurface& surface, const PairGeometry& geometry,
-                              const RectMap& map1, const ColorImage& color1, int num_threads);
+                              const RectMap& map1, const Picture& picture1, int num_threads);
 
 // What the surface fills of picture 1's cells. cell_of_node: the cell that each of the
 // nodes lies in, -1 outside the picture.

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "colmap_seapoint/base/features.h"
-#include "colmap_seapoint/base/image.h"
+#include "colmap_seapoint/base/picture.h"
 #include "densify/densify_pair.h"
 #include "densify/densify_sequence.h"
 #include "densify/influence_mask.h"
@@ -16,13 +16,13 @@ namespace colmap_seapoint {
 struct PairDebug {
   PairReport report;
   View view1, view2;
-  const ColorImage* color1 = nullptr;
+  const Picture* picture1 = nullptr;
   const std::vector<SeaPoint>* points1 = nullptr;
   std::vector<SeaPointLabel> labels1;  // empty: no labels (completion pass)
 
   // Interpair (paper 2.5). Without a previous pair all of it is unset.
   int previous_image_idx = -1;
-  const ColorImage* previous_color = nullptr;
+  const Picture* previous_picture = nullptr;
   const std::vector<SeaPoint>* previous_points = nullptr;
   std::vector<SeaPointLabel> previous_labels;
   FeatureMatches interpair;      // idx1 in previous_points, idx2 in points1

@@ -3,9 +3,24 @@
 #include <algorithm>
 
 #include "colmap_seapoint/base/error.h"
-#include "densify/gray_kernels.h"
 
 namespace colmap_seapoint {
+
+// The new one, and those still being read, count as much as the largest that is there.
+void PictureCache::MakeRoom() {
+  size_t largest = 0;
+  for (const Entry& entry : pictures_) largest = std::max<size_t>(largest, *entry.num_bytes);
+  const auto bytes_of = [&](const Entry& entry) {
+    const size_t bytes = *entry.num_bytes;
+    return bytes > 0 ? bytes : largest;
+  };
+  size_t total = largest;
+  for (const Entry& entry : pictures_) total += bytes_of(entry);
+  while (pictures_.size() >= kMinPictures && total > kMaxBytes) {
+    total -= std::min(total, bytes_of(pictures_.front()));
+    pictures_.pop_front();
+  }
+}
 
 PictureCache::PendingPicture PictureCache::Start(int image_idx, bool with_color) {
   for (auto entry = pictures_.begin(); entry != pictures_.end(); ++entry) {
@@ -17,19 +32,20 @@ PictureCache::PendingPicture PictureCache::Start(int image_idx, bool with_color)
     std::rotate(entry, entry + 1, pictures_.end());
     return pictures_.back().pending;
   }
-  if (pictures_.size() >= max_pictures_) pictures_.pop_front();
-  PendingPicture pending = std::async(std::launch::async, [source = source_, image_idx,
-                                                           with_color] {
-                             auto picture = std::make_shared<Picture>();
-                             if (with_color) {
-                               picture->color = source->ReadColor(image_idx);
-                               picture->gray = GrayOfColor(picture->color);
-                             } else {
-                               picture->gray = source->ReadGray(image_idx);
-                             }
-                             return std::shared_ptr<const Picture>(picture);
-                           }).share();
-  pictures_.push_back({image_idx, with_color, pending});
+  MakeRoom();
+  auto num_bytes = std::make_shared<std::atomic<size_t>>(0);
+  const auto read = [source = source_, image_idx, with_color, num_bytes] {
+    auto picture = std::make_shared<Picture>();
+    if (with_color) {
+      *picture = source->ReadPicture(image_idx);
+    } else {
+      picture->luma = source->ReadLuma(image_idx);
+    }
+    *num_bytes = picture->NumBytes();
+    return std::shared_ptr<const Picture>(picture);
+  };
+  PendingPicture pending = std::async(std::launch::async, read).share();
+  pictures_.push_back({image_idx, with_color, num_bytes, pending});
   return pending;
 }
 
@@ -42,15 +58,6 @@ std::shared_ptr<const Picture> PictureCache::Wait(int image_idx, bool with_color
   }
 }
 
-ColorImage PictureCache::ReadAside(int image_idx) {
-  try {
-    return source_->ReadColor(image_idx);
-  } catch (const Error& error) {
-    LeaveOut(image_idx, error.Finding());
-    return {};
-  }
-}
-
 Features PictureCache::ObtainSeaPoints(int image_idx) {
   try {
     if (auto stored = source_->ReadSeaPoints(image_idx)) return std::move(*stored);
@@ -58,8 +65,8 @@ Features PictureCache::ObtainSeaPoints(int image_idx) {
     LeaveOut(image_idx, error.Finding());
     return {};
   }
-  const auto picture = GetGray(image_idx);
-  return picture ? source_->FindSeaPoints(picture->gray) : Features();
+  const auto picture = GetLuma(image_idx);
+  return picture ? source_->FindSeaPoints(picture->luma) : Features();
 }
 
 std::shared_ptr<const Features> PictureCache::GetSeaPoints(int image_idx) {

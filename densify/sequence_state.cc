@@ -17,16 +17,6 @@ constexpr double kMinParallaxDeg = 1.0;   // ours: motion can be mere rotation
 constexpr double kMaxParallaxDeg = 30.0;  // a wider pair is not preferred: it sees two surfaces
 constexpr double kMinSharedShare = 0.6;   // of the first picture, in the preferred second one
 
-// Five are in use around a pair; more serve the completion pass, which comes back to them.
-size_t CachedPictures(const SparseModel& model) {
-  constexpr double kMaxBytes = 384e6;
-  double pixels = 1;
-  for (const auto& [id, camera] : model.cameras) {
-    pixels = std::max(pixels, static_cast<double>(camera.width) * camera.height);
-  }
-  return std::max<size_t>(5, static_cast<size_t>(kMaxBytes / (4 * pixels)));
-}
-
 std::pair<int, int> Ordered(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
 }  // namespace
@@ -39,7 +29,7 @@ SequenceState::SequenceState(const SparseModel& model, std::vector<int> order, c
       options_(options),
       num_threads_(num_threads),
       callbacks_(callbacks),
-      cache_(source, CachedPictures(model)),
+      cache_(source),
       covisible_(CovisiblePictures(model, order_)) {
   std::vector<int> position_of(order_.size());
   for (int position = 0; position < NumPictures(); ++position) {
@@ -104,16 +94,16 @@ std::vector<SequenceState::SecondCandidate> SequenceState::SecondCandidates(int 
 int SequenceState::SelectSecond(int first) {
   PairReport report = NewReport(first, -1, "sequence");
   const int right = RightOf(first);
-  if (right >= 0) cache_.PrefetchGray(ImageIdxAt(right));
+  if (right >= 0) cache_.PrefetchLuma(ImageIdxAt(right));
   if (!cache_.Get(ImageIdxAt(first))) {
     report.skipped = "the picture cannot be read";
     report_.pairs.push_back(report);
     return NumPictures();
   }
-  if (right >= 0 && cache_.GetGray(ImageIdxAt(right))) return right;
+  if (right >= 0 && cache_.GetLuma(ImageIdxAt(right))) return right;
   report.skipped = "no following picture matches it";
   for (const auto& [second, parallax] : SecondCandidates(first)) {
-    if (!cache_.GetGray(ImageIdxAt(second))) continue;
+    if (!cache_.GetLuma(ImageIdxAt(second))) continue;
     const auto matches = MatchesOf(first, second);
     if (static_cast<int>(matches->size()) < options_.min_num_seeds) continue;
     const double motion = MeanMotion(SeaPointsAt(first)->points, SeaPointsAt(second)->points,
@@ -229,7 +219,7 @@ bool SequenceState::RunPair(int first, int second, const Overlap& overlap,
   const Timer timer;
   densified_pairs_.insert(Ordered(first, second));
   const auto picture1 = cache_.Get(ImageIdxAt(first));
-  const auto picture2 = cache_.GetGray(ImageIdxAt(second));
+  const auto picture2 = cache_.GetLuma(ImageIdxAt(second));
   if (!picture1 || !picture2) {
     report->skipped = "a picture cannot be read";
     return false;
@@ -237,9 +227,8 @@ bool SequenceState::RunPair(int first, int second, const Overlap& overlap,
   PairInput input;
   input.view1 = ViewAt(first);
   input.view2 = ViewAt(second);
-  input.color1 = &picture1->color;
-  input.gray1 = &picture1->gray;
-  input.gray2 = &picture2->gray;
+  input.picture1 = picture1.get();
+  input.luma2 = &picture2->luma;
   input.seeds = std::move(seeds);
   input.cells = CellsAt(first);
   input.closed = overlap.closed;
@@ -269,7 +258,7 @@ void SequenceState::ShowPair(int first, int second, const Overlap& overlap,
   debug.report = report;
   debug.view1 = input.view1;
   debug.view2 = input.view2;
-  debug.color1 = input.color1;
+  debug.picture1 = input.picture1;
   debug.points1 = &points->points;
   debug.labels1 = overlap.labels;
   debug.influence_radius1 = options_.influence_radius * LongerSide(first);
@@ -277,13 +266,13 @@ void SequenceState::ShowPair(int first, int second, const Overlap& overlap,
   debug.covered_range = overlap.covered_range;
   debug.partial = &result;
   debug.failed_seeds = FailedSeeds(input, result);
-  ColorImage previous;
+  std::shared_ptr<const Picture> previous;
   std::shared_ptr<const Features> previous_points;
   if (overlap.mask.grid.Size() > 0) {
     debug.previous_image_idx = ImageIdxAt(previous_first_);
-    previous = cache_.ReadAside(ImageIdxAt(previous_first_));
+    previous = cache_.Get(ImageIdxAt(previous_first_));
     previous_points = SeaPointsAt(previous_first_);
-    debug.previous_color = previous.Empty() ? nullptr : &previous;
+    debug.previous_picture = previous.get();
     debug.previous_points = &previous_points->points;
     debug.previous_labels = previous_.labels;
     debug.interpair = *MatchesOf(previous_first_, first);
@@ -300,7 +289,7 @@ void SequenceState::ShowPair(int first, int second, const Overlap& overlap,
 void SequenceState::DensifyNewAreas(int first, int second) {
   // Decoded while this pair is densified: most often they are the next pair.
   if (second + 1 < num_track_) cache_.Prefetch(ImageIdxAt(second + 1));
-  if (second + 2 < num_track_) cache_.PrefetchGray(ImageIdxAt(second + 2));
+  if (second + 2 < num_track_) cache_.PrefetchLuma(ImageIdxAt(second + 2));
   PairReport report = NewReport(first, second, "sequence");
   const Overlap overlap = AssessOverlap(first);
   for (const SeaPointLabel label : overlap.labels) {

@@ -23,10 +23,10 @@ Canvas::Canvas(int picture_width, int picture_height) : scale_(ScaleOf(picture_w
                      std::max(1, static_cast<int>(std::lround(picture_width * scale_))), CV_8UC3);
 }
 
-Canvas::Canvas(const ColorImage& picture, double brightness)
-    : Canvas(picture.width, picture.height) {
-  const cv::Mat whole(picture.height, picture.width, CV_8UC3,
-                      const_cast<uint8_t*>(picture.data.data()));  // NOLINT: read only
+Canvas::Canvas(const Picture& picture, double brightness)
+    : Canvas(picture.luma.width, picture.luma.height) {
+  ColorImage color = ColorOf(picture);
+  const cv::Mat whole(color.height, color.width, CV_8UC3, color.data.data());
   cv::resize(whole, rgb_, rgb_.size(), 0, 0, cv::INTER_AREA);
   rgb_.convertTo(rgb_, -1, brightness);
 }

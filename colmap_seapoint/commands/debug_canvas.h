@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "colmap_seapoint/base/image.h"
+#include "colmap_seapoint/base/picture.h"
 #include "densify/cell_grid.h"
 
 namespace colmap_seapoint {
@@ -28,7 +28,7 @@ class Canvas {
   // Black, for a picture of this size.
   Canvas(int picture_width, int picture_height);
   // The picture, its brightness multiplied.
-  Canvas(const ColorImage& picture, double brightness);
+  Canvas(const Picture& picture, double brightness);
 
   bool Empty() const { return rgb_.empty(); }
   // 255 within `radius` of a point / inside the points' convex hull, as large as the canvas.

@@ -97,7 +97,7 @@ std::string WithPercent(const std::string& name, double share) {
 void DebugFigures::Write(const PairDebug& pair) {
   ++num_pairs_;
   std::filesystem::create_directories(folder_);
-  const bool has_previous = pair.previous_color != nullptr;
+  const bool has_previous = pair.previous_picture != nullptr;
   if (has_previous) WriteInfluenceAreas(pair);
   WriteMasks(pair);
   WriteDisparities(pair);
@@ -117,7 +117,7 @@ void DebugFigures::WriteFigure(const std::string& name, const Canvas& canvas) co
 
 void DebugFigures::WriteInfluenceAreas(const PairDebug& pair) const {
   const Interpair ends(pair);
-  Canvas left(*pair.previous_color, 0.8), right(*pair.color1, 0.8);
+  Canvas left(*pair.previous_picture, 0.8), right(*pair.picture1, 0.8);
   left.Circles(ends.processed0, pair.influence_radius0, kBlue);
   left.Circles(ends.revived0, pair.influence_radius0, kOrange);
   right.Circles(ends.processed1, pair.influence_radius1, kBlue);
@@ -170,16 +170,16 @@ void DebugFigures::WriteDisparities(const PairDebug& pair) {
 
 void DebugFigures::WriteOcclusions(const PairDebug& pair) const {
   const auto partial = Place(pair, pair.partial->partial);
-  Canvas left(*pair.color1, 0.3);
+  Canvas left(*pair.picture1, 0.3);
   left.Disparities(partial, SizeOf(pair.partial->partial), kGray, RangeOf(partial));
   left.Circles(pair.failed_seeds, 0.5 * pair.influence_radius1, kRed);
   left.Dots(pair.failed_seeds, kRed);
   left.Title("intrapair: " + std::to_string(pair.failed_seeds.size()) +
              " seeds without disparity around them (red)");
-  if (pair.previous_color == nullptr) return WriteFigure("fig15_occlusions", left);
+  if (pair.previous_picture == nullptr) return WriteFigure("fig15_occlusions", left);
 
   const Interpair ends(pair);
-  Canvas right(*pair.color1, 0.8);
+  Canvas right(*pair.picture1, 0.8);
   const cv::Mat unmatched =
       right.Hull(ends.All1()) & ~right.Discs(ends.All1(), pair.influence_radius1);
   right.Circles(ends.All1(), pair.influence_radius1, kBlue);

@@ -64,17 +64,21 @@ std::string ModelPictures::Check(int image_idx) const {
   }
 }
 
-ColorImage ModelPictures::ReadColor(int image_idx) {
-  return WithCheckedSize(image_idx, ReadColorImage(PathOf(image_idx)));
+Picture ModelPictures::ReadPicture(int image_idx) {
+  Picture picture = colmap_seapoint::ReadPicture(PathOf(image_idx));
+  RequireSize(image_idx, picture.luma);
+  return picture;
 }
 
-GrayImage ModelPictures::ReadGray(int image_idx) {
-  return WithCheckedSize(image_idx, ReadGrayImage(PathOf(image_idx)));
+GrayImage ModelPictures::ReadLuma(int image_idx) {
+  GrayImage luma = ReadGrayImage(PathOf(image_idx));
+  RequireSize(image_idx, luma);
+  return luma;
 }
 
-Image<uint8_t> ModelPictures::WithCheckedSize(int image_idx, Image<uint8_t> picture) const {
-  const std::string problem = CheckSize(image_idx, picture.width, picture.height);
-  if (problem.empty()) return picture;
+void ModelPictures::RequireSize(int image_idx, const GrayImage& luma) const {
+  const std::string problem = CheckSize(image_idx, luma.width, luma.height);
+  if (problem.empty()) return;
   throw Error(PathOf(image_idx).string(), problem,
               "give the pictures that the model was made from, reduced or in full");
 }

@@ -32,8 +32,8 @@ class ModelPictures : public PictureSource {
   // How many of the model's pictures have SeaPoints in the database.
   int NumInDatabase() const { return static_cast<int>(in_database_.size()); }
 
-  ColorImage ReadColor(int image_idx) override;
-  GrayImage ReadGray(int image_idx) override;
+  Picture ReadPicture(int image_idx) override;
+  GrayImage ReadLuma(int image_idx) override;
   std::optional<Features> ReadSeaPoints(int image_idx) override;
   Features FindSeaPoints(const GrayImage& picture) override;
   // Damaged matches are as good as none; a warning says so.
@@ -48,8 +48,8 @@ class ModelPictures : public PictureSource {
 
   const PosedImage& ImageAt(int image_idx) const;
   std::filesystem::path PathOf(int image_idx) const;
-  // The picture; throws Error when it is of another size than its camera.
-  Image<uint8_t> WithCheckedSize(int image_idx, Image<uint8_t> picture) const;
+  // Throws Error when the picture is of another size than its camera.
+  void RequireSize(int image_idx, const GrayImage& luma) const;
   // "" or the reason.
   std::string CheckSize(int image_idx, int width, int height) const;
   // Whether the database has SeaPoints of ours that ReadSeaPoints can return.

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "colmap_seapoint/base/image.h"
+#include "colmap_seapoint/base/picture.h"
 
 namespace colmap_seapoint {
 
@@ -34,8 +35,12 @@ ImageSize ReadTiffSize(const std::filesystem::path& path);
 ImageSize ReadPnmSize(const std::filesystem::path& path);
 ImageSize ReadBmpSize(const std::filesystem::path& path);
 
-// `grey`: a colour picture may be returned as its luma (1 channel) when that is cheaper.
-Image<uint8_t> DecodeJpeg(const std::filesystem::path& path, bool grey);
+// As what: kLuma decodes no chroma where the file holds luma apart; the same luma as kPlanes. Where
+// the file does not hold luma and chroma (CMYK, RGB), or chroma in a grid that Picture does not know,
+// both give the planes of its red, green and blue.
+enum class JpegContent { kLuma, kPlanes };
+Picture DecodeJpegPlanes(const std::filesystem::path& path, JpegContent content);
+Image<uint8_t> DecodeJpeg(const std::filesystem::path& path);
 Image<uint8_t> DecodePng(const std::filesystem::path& path);
 Image<uint8_t> DecodeTiff(const std::filesystem::path& path);
 Image<uint8_t> DecodePnm(const std::filesystem::path& path);

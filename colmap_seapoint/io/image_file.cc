@@ -58,12 +58,23 @@ std::vector<std::string> FindImages(const std::filesystem::path& folder) {
   return names;
 }
 
-Image<uint8_t> Decode(const std::filesystem::path& path, bool grey) {
-  const ImageFormat format = DetectImageFormat(path);
+// Runs a decoder; too little memory becomes an Error.
+template <typename Decoder>
+auto WithinMemory(const std::filesystem::path& path, Decoder decode) {
   try {
+    return decode();
+  } catch (const std::bad_alloc&) {
+    throw Error(path.string(), "there is not enough memory to decode it",
+                "make the picture smaller or use a machine with more memory");
+  }
+}
+
+// 1 or 3 channels.
+Image<uint8_t> Decode(const std::filesystem::path& path, ImageFormat format) {
+  return WithinMemory(path, [&] {
     switch (format) {
       case ImageFormat::kJpeg:
-        return DecodeJpeg(path, grey);
+        return DecodeJpeg(path);
       case ImageFormat::kPng:
         return DecodePng(path);
       case ImageFormat::kTiff:
@@ -75,14 +86,29 @@ Image<uint8_t> Decode(const std::filesystem::path& path, bool grey) {
       default:
         return DecodeWithOpenCv(path, format);
     }
-  } catch (const std::bad_alloc&) {
-    throw Error(path.string(), "there is not enough memory to decode it",
-                "make the picture smaller or use a machine with more memory");
-  }
+  });
+}
+
+Picture DecodePlanes(const std::filesystem::path& path, JpegContent content) {
+  const ImageFormat format = DetectImageFormat(path);
+  return WithinMemory(path, [&] {
+    if (format == ImageFormat::kJpeg) return DecodeJpegPlanes(path, content);
+    Image<uint8_t> image = Decode(path, format);
+    Picture picture;
+    if (image.channels == 1) {
+      picture.luma = std::move(image);
+    } else if (content == JpegContent::kLuma) {
+      picture.luma = LumaOf(image);
+    } else {
+      picture = PictureOf(image);
+    }
+    return picture;
+  });
 }
 
 ImageSize ReadSize(const std::filesystem::path& path) {
-  switch (DetectImageFormat(path)) {
+  const ImageFormat format = DetectImageFormat(path);
+  switch (format) {
     case ImageFormat::kJpeg:
       return ReadJpegSize(path);
     case ImageFormat::kPng:
@@ -94,7 +120,7 @@ ImageSize ReadSize(const std::filesystem::path& path) {
     case ImageFormat::kBmp:
       return ReadBmpSize(path);
     default: {  // rare: not worth a header parser each
-      const Image<uint8_t> image = Decode(path, false);
+      const Image<uint8_t> image = Decode(path, format);
       return {image.width, image.height};
     }
   }
@@ -253,12 +279,15 @@ ImageInfo ReadImageInfo(const std::filesystem::path& path) {
 }
 
 GrayImage ReadGrayImage(const std::filesystem::path& path) {
-  Image<uint8_t> image = Decode(path, true);
-  return image.channels == 1 ? image : Convert(image, 1, cv::COLOR_RGB2GRAY);
+  return DecodePlanes(path, JpegContent::kLuma).luma;
+}
+
+Picture ReadPicture(const std::filesystem::path& path) {
+  return DecodePlanes(path, JpegContent::kPlanes);
 }
 
 ColorImage ReadColorImage(const std::filesystem::path& path) {
-  Image<uint8_t> image = Decode(path, false);
+  Image<uint8_t> image = Decode(path, DetectImageFormat(path));
   return image.channels == 3 ? image : Convert(image, 3, cv::COLOR_GRAY2RGB);
 }
 

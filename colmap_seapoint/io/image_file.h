@@ -9,6 +9,7 @@
 
 #include "colmap_seapoint/base/geodesy.h"
 #include "colmap_seapoint/base/image.h"
+#include "colmap_seapoint/base/picture.h"
 
 namespace colmap_seapoint {
 
@@ -38,10 +39,14 @@ struct ImageInfo {
 ImageInfo ReadImageInfo(const std::filesystem::path& path);
 
 // Whole decodes; EXIF orientation ignored (as COLMAP does: the pixels as they are stored). 16-bit
-// pictures are scaled to 8 bits. Grey is 0.299 R + 0.587 G + 0.114 B.
+// pictures are scaled to 8 bits. Grey is 0.299 R + 0.587 G + 0.114 B: of a JPEG, the luma that it
+// holds, so ReadGrayImage(path) == ReadPicture(path).luma, always.
 // Throws Error for what cannot be decoded *whole*: a truncated JPEG, PNG or TIFF is an error, not a
 // half-grey picture. Nothing is printed by the codec libraries.
 GrayImage ReadGrayImage(const std::filesystem::path& path);
+// A JPEG's own planes, neither enlarged nor converted; of other formats, and of a JPEG that holds
+// none such, the planes of its red, green and blue. A grey picture has no colour.
+Picture ReadPicture(const std::filesystem::path& path);
 ColorImage ReadColorImage(const std::filesystem::path& path);
 
 // 8-bit, 1 or 3 channels, format from the extension; atomic.

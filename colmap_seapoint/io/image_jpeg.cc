@@ -4,6 +4,11 @@
 #include <jerror.h>
 #include <jpeglib.h>
 
+#include <algorithm>
+#include <cstring>
+#include <utility>
+#include <vector>
+
 #include "colmap_seapoint/io/image_codecs.h"
 
 namespace colmap_seapoint {
@@ -72,12 +77,11 @@ bool ReadHeader(JpegDecoder* decoder) {
   return true;
 }
 
-bool Start(JpegDecoder* decoder, bool grey) {
+bool Start(JpegDecoder* decoder, J_COLOR_SPACE color_space, bool as_stored) {
   jpeg_decompress_struct* info = &decoder->info;
   if (setjmp(decoder->errors.jump) != 0) return false;
-  const bool is_cmyk = info->jpeg_color_space == JCS_CMYK || info->jpeg_color_space == JCS_YCCK;
-  const bool is_grey = info->jpeg_color_space == JCS_GRAYSCALE;
-  info->out_color_space = is_cmyk ? JCS_CMYK : (grey || is_grey) ? JCS_GRAYSCALE : JCS_RGB;
+  info->out_color_space = color_space;
+  info->raw_data_out = as_stored ? TRUE : FALSE;
   jpeg_start_decompress(info);
   return true;
 }
@@ -90,6 +94,60 @@ bool ReadRows(JpegDecoder* decoder, uint8_t* pixels) {
   while (info->output_scanline < info->output_height) {
     JSAMPROW row = pixels + info->output_scanline * stride;
     jpeg_read_scanlines(info, &row, 1);
+  }
+  jpeg_finish_decompress(info);  // reads on to the end-of-image marker
+  return true;
+}
+
+// 0, 1, 2 for a plane as large as the luma's, half, a quarter; else -1.
+int ShiftOf(int max_sampling, int sampling) {
+  for (int shift = 0; shift <= 2; ++shift) {
+    if (sampling << shift == max_sampling) return shift;
+  }
+  return -1;
+}
+
+// Whether the file holds luma in full and both chroma planes in a grid that Picture knows.
+bool HoldsPlanes(const jpeg_decompress_struct& info) {
+  if (info.jpeg_color_space != JCS_YCbCr || info.num_components != 3) return false;
+  const jpeg_component_info &y = info.comp_info[0], &cb = info.comp_info[1],
+                            &cr = info.comp_info[2];
+  return y.h_samp_factor == info.max_h_samp_factor && y.v_samp_factor == info.max_v_samp_factor &&
+         cb.h_samp_factor == cr.h_samp_factor && cb.v_samp_factor == cr.v_samp_factor &&
+         ShiftOf(y.h_samp_factor, cb.h_samp_factor) >= 0 &&
+         ShiftOf(y.v_samp_factor, cb.v_samp_factor) >= 0;
+}
+
+// Room for one row of a JPEG's largest blocks (iMCU), whose sides go beyond the picture's.
+struct RowOfBlocks {
+  Image<uint8_t> samples[3];
+  std::vector<JSAMPROW> rows[3];
+  JSAMPARRAY planes[3];
+
+  explicit RowOfBlocks(const jpeg_decompress_struct& info) {
+    for (int c = 0; c < 3; ++c) {
+      const jpeg_component_info& component = info.comp_info[c];
+      samples[c] = Image<uint8_t>(static_cast<int>(component.width_in_blocks) * DCTSIZE,
+                                  component.v_samp_factor * DCTSIZE);
+      for (int y = 0; y < samples[c].height; ++y) rows[c].push_back(samples[c].Row(y));
+      planes[c] = rows[c].data();
+    }
+  }
+};
+
+bool ReadPlanes(JpegDecoder* decoder, RowOfBlocks* blocks, GrayImage* const planes[3]) {
+  jpeg_decompress_struct* info = &decoder->info;
+  const auto num_lines = static_cast<JDIMENSION>(info->max_v_samp_factor * DCTSIZE);
+  if (setjmp(decoder->errors.jump) != 0) return false;
+  for (int row = 0; info->output_scanline < info->output_height; ++row) {
+    jpeg_read_raw_data(info, blocks->planes, num_lines);
+    for (int c = 0; c < 3; ++c) {
+      const int begin = row * blocks->samples[c].height;
+      const int count = std::min(blocks->samples[c].height, planes[c]->height - begin);
+      for (int y = 0; y < count; ++y) {
+        std::memcpy(planes[c]->Row(begin + y), blocks->samples[c].Row(y), planes[c]->Stride());
+      }
+    }
   }
   jpeg_finish_decompress(info);  // reads on to the end-of-image marker
   return true;
@@ -109,6 +167,50 @@ Image<uint8_t> RgbFromCmyk(const Image<uint8_t>& cmyk, bool is_inverted) {
   return rgb;
 }
 
+// One channel (luma) or three.
+Image<uint8_t> DecodePixels(const std::filesystem::path& path, const ImageSize& size,
+                            J_COLOR_SPACE color_space, JpegDecoder* decoder) {
+  if (!Start(decoder, color_space, false)) ThrowDamagedImage(path, decoder->errors.message);
+  Image<uint8_t> image(size.width, size.height, decoder->info.output_components);
+  if (!ReadRows(decoder, image.data.data()) || decoder->errors.is_damaged) {
+    ThrowDamagedImage(path, decoder->errors.message);
+  }
+  if (image.channels == 4) return RgbFromCmyk(image, decoder->info.saw_Adobe_marker != 0);
+  return image;
+}
+
+Image<uint8_t> DecodeInColor(const std::filesystem::path& path, const ImageSize& size,
+                             JpegDecoder* decoder) {
+  switch (decoder->info.jpeg_color_space) {
+    case JCS_CMYK:
+    case JCS_YCCK:
+      return DecodePixels(path, size, JCS_CMYK, decoder);
+    case JCS_GRAYSCALE:
+      return DecodePixels(path, size, JCS_GRAYSCALE, decoder);
+    default:
+      return DecodePixels(path, size, JCS_RGB, decoder);
+  }
+}
+
+// Without upsampling and colour conversion, a third of a decoder's work.
+Picture DecodeAsStored(const std::filesystem::path& path, const ImageSize& size,
+                       JpegDecoder* decoder) {
+  if (!Start(decoder, JCS_YCbCr, true)) ThrowDamagedImage(path, decoder->errors.message);
+  const jpeg_component_info &y = decoder->info.comp_info[0], &cb = decoder->info.comp_info[1];
+  Picture picture;
+  picture.chroma_shift_x = ShiftOf(y.h_samp_factor, cb.h_samp_factor);
+  picture.chroma_shift_y = ShiftOf(y.v_samp_factor, cb.v_samp_factor);
+  picture.luma = GrayImage(size.width, size.height);
+  picture.cb = picture.cr = GrayImage(static_cast<int>(cb.downsampled_width),
+                                      static_cast<int>(cb.downsampled_height));
+  RowOfBlocks blocks(decoder->info);
+  GrayImage* const planes[3] = {&picture.luma, &picture.cb, &picture.cr};
+  if (!ReadPlanes(decoder, &blocks, planes) || decoder->errors.is_damaged) {
+    ThrowDamagedImage(path, decoder->errors.message);
+  }
+  return picture;
+}
+
 ImageSize CheckHeader(const std::filesystem::path& path, JpegDecoder* decoder) {
   if (!ReadHeader(decoder)) ThrowDamagedImage(path, decoder->errors.message);
   if (decoder->errors.is_damaged) ThrowDamagedImage(path, decoder->errors.message);
@@ -122,16 +224,25 @@ ImageSize ReadJpegSize(const std::filesystem::path& path) {
   return CheckHeader(path, &decoder);
 }
 
-Image<uint8_t> DecodeJpeg(const std::filesystem::path& path, bool grey) {
+Image<uint8_t> DecodeJpeg(const std::filesystem::path& path) {
   JpegDecoder decoder(path);
   const ImageSize size = CheckHeader(path, &decoder);
-  if (!Start(&decoder, grey)) ThrowDamagedImage(path, decoder.errors.message);
-  Image<uint8_t> image(size.width, size.height, decoder.info.output_components);
-  if (!ReadRows(&decoder, image.data.data()) || decoder.errors.is_damaged) {
-    ThrowDamagedImage(path, decoder.errors.message);
+  return DecodeInColor(path, size, &decoder);
+}
+
+Picture DecodeJpegPlanes(const std::filesystem::path& path, JpegContent content) {
+  JpegDecoder decoder(path);
+  const ImageSize size = CheckHeader(path, &decoder);
+  Picture picture;
+  if (HoldsPlanes(decoder.info)) {
+    if (content == JpegContent::kPlanes) return DecodeAsStored(path, size, &decoder);
+    picture.luma = DecodePixels(path, size, JCS_GRAYSCALE, &decoder);
+    return picture;
   }
-  if (image.channels == 4) return RgbFromCmyk(image, decoder.info.saw_Adobe_marker != 0);
-  return image;
+  Image<uint8_t> image = DecodeInColor(path, size, &decoder);
+  if (image.channels == 3) return PictureOf(image);
+  picture.luma = std::move(image);
+  return picture;
 }
 
 }  // namespace colmap_seapoint

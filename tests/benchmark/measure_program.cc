@@ -97,7 +97,7 @@ ProgramRow MeasureProgram(const ProgramOptions& options) {
     }
   });
   row.own_decode_cpu = MedianCpu(options.num_repeats, [&] {
-    for (const PosedImage& image : model.images) ReadColorImage(options.image_path / image.name);
+    for (const PosedImage& image : model.images) ReadPicture(options.image_path / image.name);
   });
   row.pictures = static_cast<double>(model.images.size());
   row.megapixels = 1e-6 * pixels;

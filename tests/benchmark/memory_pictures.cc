@@ -28,20 +28,20 @@ MemoryPictures::MemoryPictures(const SparseModel& model, const std::filesystem::
   pictures_.resize(model.images.size());
   features_.resize(model.images.size());
   ParallelFor(num_threads, static_cast<int64_t>(model.images.size()), [&](int64_t i) {
-    pictures_[static_cast<size_t>(i)] = source_.ReadColor(static_cast<int>(i));
+    pictures_[static_cast<size_t>(i)] = source_.ReadPicture(static_cast<int>(i));
   });
   for (size_t i = 0; i < model.images.size(); ++i) {
     if (auto stored = source_.ReadSeaPoints(static_cast<int>(i))) {
       features_[i] = std::move(*stored);
       continue;
     }
-    const GrayImage gray = ReadGrayImage(image_path / model.images[i].name);
+    const GrayImage& gray = pictures_[i].luma;
     seapoint_cpu_ += CpuSecondsOf([&] { features_[i] = source_.FindSeaPoints(gray); });
   }
   if (source_.NumInDatabase() > 0) seapoint_cpu_ = kNotMeasured;
 }
 
-ColorImage MemoryPictures::ReadColor(int image_idx) {
+Picture MemoryPictures::ReadPicture(int image_idx) {
   return pictures_.at(static_cast<size_t>(image_idx));
 }
 
@@ -87,8 +87,8 @@ void MemoryPictures::DropSeaPoints(int image_idx, const std::vector<Eigen::Vecto
 
 double MemoryPictures::Megapixels() const {
   double pixels = 0;
-  for (const ColorImage& picture : pictures_) {
-    pixels += static_cast<double>(picture.width) * picture.height;
+  for (const Picture& picture : pictures_) {
+    pixels += static_cast<double>(picture.luma.width) * picture.luma.height;
   }
   return 1e-6 * pixels;
 }

@@ -16,13 +16,13 @@ namespace colmap_seapoint {
 
 class MemoryPictures : public PictureSource {
  public:
-  // The model outlives it. Decodes every picture (3 bytes a pixel are held), reads its SeaPoints
+  // The model outlives it. Decodes every picture (their planes are held), reads its SeaPoints
   // from the database or, where that has none (or is not given), finds them. Throws Error for
   // unreadable pictures.
   MemoryPictures(const SparseModel& model, const std::filesystem::path& image_path,
                  const std::string& database_path, int num_threads);
 
-  ColorImage ReadColor(int image_idx) override;
+  Picture ReadPicture(int image_idx) override;
   std::optional<Features> ReadSeaPoints(int image_idx) override;
   Features FindSeaPoints(const GrayImage& picture) override;
   // The database's; none after DropSeaPoints, which changes the indices.
@@ -41,7 +41,7 @@ class MemoryPictures : public PictureSource {
  private:
   ModelPictures source_;
   bool dropped_ = false;
-  std::vector<ColorImage> pictures_;
+  std::vector<Picture> pictures_;
   std::vector<Features> features_;
   double seapoint_cpu_ = 0;
   std::atomic<int64_t> match_nanoseconds_{0};

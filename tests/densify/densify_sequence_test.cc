@@ -160,9 +160,9 @@ TEST(DensifySequenceTest, EveryPictureAndPairOnceInTheSequence) {
       for (const auto& [pair, count] : strip->num_asked) {
         EXPECT_EQ(count, 1) << pair.first << ", " << pair.second;
       }
-      // In grey as the second picture of a pair, in colour as the first, each once.
+      // In luma as the second picture of a pair, in colour as the first, each once.
       std::set<int> decoded;
-      for (const auto* kind : {&strip->num_decoded, &strip->num_decoded_gray}) {
+      for (const auto* kind : {&strip->num_decoded, &strip->num_decoded_luma}) {
         for (const auto& [image_idx, count] : *kind) {
           EXPECT_EQ(count, 1) << image_idx;
           decoded.insert(image_idx);
@@ -194,7 +194,7 @@ TEST(DensifySequenceTest, DebugShowsWhatHappened) {
       EXPECT_EQ(pair.view2.image_idx, pair.report.image_idx2);
       ++num_shown;
       num_normal += static_cast<int64_t>(pair.normal.cloud.points.size());
-      if (pair.previous_color == nullptr) return;
+      if (pair.previous_picture == nullptr) return;
       ++num_with_previous;
       EXPECT_EQ(pair.report.pass, "sequence");
       EXPECT_EQ(pair.labels1.size(), pair.points1->size());

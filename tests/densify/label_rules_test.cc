@@ -96,7 +96,7 @@ TEST(LabelRulesTest, ProcessedOrToBeEvaluatedAgain) {
   SendFish(&survey);
   int num_rea = 0, num_pa = 0;
   Densify(&survey, Sequential(), 2, [&](const PairDebug& pair) {
-    if (pair.previous_color == nullptr) return;
+    if (pair.previous_picture == nullptr) return;
     ASSERT_EQ(pair.previous_image_idx, 0);
     const double radius = pair.influence_radius0;
     const Patch around = {
@@ -127,7 +127,7 @@ TEST(LabelRulesTest, OverlapNewAndToBeEvaluatedAgain) {
   SendFish(&survey);
   int num_oa = 0, num_na = 0, num_rea = 0;
   const Outcome outcome = Densify(&survey, Sequential(), 2, [&](const PairDebug& pair) {
-    if (pair.previous_color == nullptr) return;
+    if (pair.previous_picture == nullptr) return;
     ASSERT_EQ(pair.report.image_idx1, 2);
     const double radius = pair.influence_radius1;
     const Patch around = {
@@ -215,7 +215,7 @@ TEST(LabelRulesTest, WhatWasHiddenIsReconstructedWhenItShows) {
   FourPictures survey(BoardAndBox());
   int num_on_box = 0;
   const Outcome outcome = Densify(&survey, Sequential(), 2, [&](const PairDebug& pair) {
-    if (pair.previous_color == nullptr) return;
+    if (pair.previous_picture == nullptr) return;
     ASSERT_EQ(pair.report.image_idx1, 2);
     const double margin = pair.influence_radius1 * kGsd;
     for (size_t i = 0; i < pair.labels1.size(); ++i) {

@@ -9,18 +9,15 @@ PairScene::PairScene(const World& the_world, const Viewpoint& viewpoint1,
     : world(the_world),
       view1(viewpoint1),
       view2(viewpoint2),
-      color1(TakePicture(world, view1)),
-      color2(TakePicture(world, view2)),
-      gray1(GrayOf(color1)),
-      gray2(GrayOf(color2)) {}
+      picture1(PictureOf(TakePicture(world, view1))),
+      luma2(LumaOf(TakePicture(world, view2))) {}
 
 PairInput PairScene::Input(const PartialDensificationOptions& options, int num_seeds) const {
   PairInput input;
   input.view1 = {0, view1.camera, view1.cam_from_world};
   input.view2 = {1, view2.camera, view2.cam_from_world};
-  input.color1 = &color1;
-  input.gray1 = &gray1;
-  input.gray2 = &gray2;
+  input.picture1 = &picture1;
+  input.luma2 = &luma2;
   input.cells = CellsOf(view1.camera, options);
   std::mt19937 generator(3);
   std::uniform_real_distribution<double> x(0, view1.camera.width), y(0, view1.camera.height);

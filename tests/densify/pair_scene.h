@@ -11,8 +11,8 @@ namespace colmap_seapoint {
 struct PairScene {
   World world;
   Viewpoint view1, view2;
-  ColorImage color1, color2;
-  GrayImage gray1, gray2;
+  Picture picture1;
+  GrayImage luma2;
 
   PairScene(const World& the_world, const Viewpoint& viewpoint1, const Viewpoint& viewpoint2);
   // Exact correspondences of `num_seeds` random pixels that both pictures see.

@@ -88,18 +88,18 @@ void TestSurvey::HideBehindFish(int image_idx, const Eigen::Vector2d& center, do
   }
 }
 
-ColorImage TestSurvey::ReadColor(int image_idx) {
+Picture TestSurvey::ReadPicture(int image_idx) {
   if (image_idx == unreadable_) throw Error("a.jpg", "is cut short", "copy it again");
   const std::lock_guard<std::mutex> lock(mutex_);
   ++num_decoded[image_idx];
-  return pictures_[static_cast<size_t>(image_idx)];
+  return PictureOf(pictures_[static_cast<size_t>(image_idx)]);
 }
 
-GrayImage TestSurvey::ReadGray(int image_idx) {
+GrayImage TestSurvey::ReadLuma(int image_idx) {
   if (image_idx == unreadable_) throw Error("a.jpg", "is cut short", "copy it again");
   const std::lock_guard<std::mutex> lock(mutex_);
-  ++num_decoded_gray[image_idx];
-  return GrayOf(pictures_[static_cast<size_t>(image_idx)]);
+  ++num_decoded_luma[image_idx];
+  return LumaOf(pictures_[static_cast<size_t>(image_idx)]);
 }
 
 std::optional<Features> TestSurvey::ReadSeaPoints(int image_idx) {
@@ -110,10 +110,7 @@ std::optional<Features> TestSurvey::ReadSeaPoints(int image_idx) {
 Features TestSurvey::FindSeaPoints(const GrayImage& picture) {
   ++num_found;
   for (size_t i = 0; i < pictures_.size(); ++i) {
-    const GrayImage gray = GrayOf(pictures_[i]);
-    size_t same = 0;
-    while (same < gray.data.size() && std::abs(gray.data[same] - picture.data[same]) <= 1) ++same;
-    if (same == gray.data.size()) return features_[i];
+    if (LumaOf(pictures_[i]).data == picture.data) return features_[i];
   }
   ADD_FAILURE() << "no picture of the survey";
   return {};

@@ -126,7 +126,7 @@ TEST(LocalMaximaTest, PicturesOfTheWorld) {
   for (const double turn_deg : {0.0, 25.0}) {
     const Viewpoint view =
         StandAt(MildCamera(CameraModel::kOpenCV, 260, 321, 243), {0, 0, 0}, {0, 0, turn_deg});
-    const GrayImage picture = GrayOf(TakePicture(world, view));
+    const GrayImage picture = LumaOf(TakePicture(world, view));
     for (const double sigma : {1.0, 2.0}) {
       const HarrisOptions harris = {sigma, 7, 0.04};
       EXPECT_GT(CheckPicture(picture, GrayImage(), harris, 3, 12), 100u);

@@ -76,8 +76,8 @@ std::optional<Eigen::Vector2d> OnPlane(const PairInput& input, const Eigen::Vect
 struct Case {
   PairInput input;
   PartialDensificationOptions options;
-  ColorImage color1;
-  GrayImage gray1, gray2;
+  Picture picture1;
+  GrayImage luma2;
 };
 
 void AnyOptions(Numbers* numbers, PartialDensificationOptions* options) {
@@ -103,17 +103,16 @@ void AnyCells(Numbers* numbers, Case* c) {
 
 void AnyPictures(double depth, Numbers* numbers, Case* c) {
   const Camera &camera1 = c->input.view1.camera, &camera2 = c->input.view2.camera;
-  c->gray2 = GrayImage(camera2.width, camera2.height);
-  for (size_t i = 0; i < c->gray2.data.size(); ++i) c->gray2.data[i] = numbers->Pixel(i);
-  c->gray1 = GrayImage(camera1.width, camera1.height);
-  c->color1 = ColorImage(camera1.width, camera1.height, 3, 99);
+  c->luma2 = GrayImage(camera2.width, camera2.height);
+  for (size_t i = 0; i < c->luma2.data.size(); ++i) c->luma2.data[i] = numbers->Pixel(i);
+  c->picture1.luma = GrayImage(camera1.width, camera1.height);
   for (int y = 0; y < camera1.height; ++y) {
     for (int x = 0; x < camera1.width; ++x) {
       const auto pixel2 = OnPlane(c->input, {x + 0.5, y + 0.5}, depth);
       const bool seen = pixel2 && camera2.InImage(*pixel2);
       const size_t index = static_cast<size_t>(y * camera1.width + x);
-      c->gray1.At(x, y) =
-          seen ? c->gray2.At(std::min(static_cast<int>(pixel2->x()), camera2.width - 1),
+      c->picture1.luma.At(x, y) =
+          seen ? c->luma2.At(std::min(static_cast<int>(pixel2->x()), camera2.width - 1),
                              std::min(static_cast<int>(pixel2->y()), camera2.height - 1))
                : numbers->Pixel(index);
     }
@@ -174,9 +173,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   AnyCells(&numbers, &c);
   AnySeeds(depth, &numbers, &c);
   AnyPictures(depth, &numbers, &c);
-  c.input.color1 = &c.color1;
-  c.input.gray1 = &c.gray1;
-  c.input.gray2 = &c.gray2;
+  c.input.picture1 = &c.picture1;
+  c.input.luma2 = &c.luma2;
 
   const PairResult one = DensifyPair(c.input, c.options, 1);
   RequireSane(c, one);

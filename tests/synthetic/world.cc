@@ -139,15 +139,6 @@ ColorImage TakePicture(const World& world, const Viewpoint& viewpoint) {
   return picture;
 }
 
-GrayImage GrayOf(const ColorImage& color) {
-  GrayImage gray(color.width, color.height);
-  for (size_t i = 0; i < gray.data.size(); ++i) {
-    gray.data[i] = static_cast<uint8_t>(std::lround(
-        0.299 * color.data[3 * i] + 0.587 * color.data[3 * i + 1] + 0.114 * color.data[3 * i + 2]));
-  }
-  return gray;
-}
-
 std::optional<Eigen::Vector3d> SurfaceAt(const World& world, const Viewpoint& viewpoint,
                                          const Eigen::Vector2d& pixel) {
   const auto ray = viewpoint.camera.CamFromImg(pixel);

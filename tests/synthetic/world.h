@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "colmap_seapoint/base/camera.h"
-#include "colmap_seapoint/base/image.h"
+#include "colmap_seapoint/base/picture.h"
 #include "colmap_seapoint/base/rigid3.h"
 #include "tests/synthetic/noise_texture.h"
 
@@ -59,8 +59,6 @@ Camera MildCamera(CameraModel model, double focal, int width, int height);
 
 // The texture's mean over 2 x 2 rays a pixel; black where no ray meets anything.
 ColorImage TakePicture(const World& world, const Viewpoint& viewpoint);
-// 0.299 red + 0.587 green + 0.114 blue.
-GrayImage GrayOf(const ColorImage& color);
 
 // The surface point that a pixel shows.
 std::optional<Eigen::Vector3d> SurfaceAt(const World& world, const Viewpoint& viewpoint,

@@ -1,0 +1,41 @@
+// A colour picture as JPEG files hold it: brightness in full, colour reduced. Densification looks
+// at the brightness of every pixel, but at the colour of the sampled points only; so colour is kept
+// as it comes and worked out where it is asked for.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "colmap_seapoint/base/image.h"
+
+namespace colmap_seapoint {
+
+// YCbCr by JFIF: full range, ITU-R BT.601, chroma 128 is grey. A chroma sample is the mean of
+// 2^chroma_shift_x columns and 2^chroma_shift_y rows; the last ones of odd sizes stand for fewer.
+struct Picture {
+  GrayImage luma;    // 0.299 red + 0.587 green + 0.114 blue, full resolution
+  GrayImage cb, cr;  // ceil(width / 2^shift_x) x ceil(height / 2^shift_y); empty: no colour
+  int chroma_shift_x = 0;  // 0, 1, 2
+  int chroma_shift_y = 0;  // 0, 1, 2
+
+  bool Empty() const { return luma.Empty(); }
+  bool HasColor() const { return !cb.Empty(); }
+  size_t NumBytes() const { return luma.data.size() + cb.data.size() + cr.data.size(); }
+};
+
+// 0.299 red + 0.587 green + 0.114 blue, in 2^15ths, rounded; as OpenCV's RGB2GRAY.
+GrayImage LumaOf(const ColorImage& color);
+
+// Luma and chroma of red, green and blue at full resolution: 3 bytes a pixel. Back again, a colour
+// is off by 2 levels at most (8 bits do not hold the chroma's fractions).
+Picture PictureOf(const ColorImage& color);
+
+// Red, green and blue of pixel (x, y), which must lie inside: chroma interpolated linearly between
+// its samples' centres, as JPEG decoders do. Grey for a picture without colour. About 10 ns.
+std::array<uint8_t, 3> ColorAt(const Picture& picture, int x, int y);
+
+// All pixels' ColorAt.
+ColorImage ColorOf(const Picture& picture);
+
+}  // namespace colmap_seapoint
