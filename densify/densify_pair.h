@@ -40,7 +40,7 @@ struct PairInput {
 };
 
 struct PairResult {
-  std::string failure;  // why there is nothing, or empty
+  std::string failure;       // why there is nothing, or empty
   PartialDisparity partial;  // what the cloud was made of, before it was smoothed
   PartialCloud cloud;
   CloudFootprint footprint;

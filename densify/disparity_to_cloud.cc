@@ -106,9 +106,8 @@ PartialCloud MakePartialCloud(const PartialSurface& surface, const PairGeometry&
 }
 
 CellTally TallyCells(const PartialSurface& surface, const PairGeometry& geometry,
-                     const SampleGrid& nodes,
-                     const std::vector<int>& cell_of_node, const CellGrid& cells,
-                     const std::vector<uint8_t>& is_new) {
+                     const SampleGrid& nodes, const std::vector<int>& cell_of_node,
+                     const CellGrid& cells, const std::vector<uint8_t>& is_new) {
   const SampleGrid& grid = surface.grid;
   struct Sum {
     Eigen::Vector3f point = Eigen::Vector3f::Zero();  // (x, y, 1) / disparity: linear in the place

@@ -24,7 +24,6 @@ struct CellTally {
 };
 CellTally TallyCells(const PartialSurface& surface, const PairGeometry& geometry,
                      const SampleGrid& nodes, const std::vector<int>& cell_of_node,
-                     const CellGrid& cells,
-                     const std::vector<uint8_t>& is_new);
+                     const CellGrid& cells, const std::vector<uint8_t>& is_new);
 
 }  // namespace colmap_seapoint

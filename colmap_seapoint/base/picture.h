@@ -14,8 +14,8 @@ namespace colmap_seapoint {
 // YCbCr by JFIF: full range, ITU-R BT.601, chroma 128 is grey. A chroma sample is the mean of
 // 2^chroma_shift_x columns and 2^chroma_shift_y rows; the last ones of odd sizes stand for fewer.
 struct Picture {
-  GrayImage luma;    // 0.299 red + 0.587 green + 0.114 blue, full resolution
-  GrayImage cb, cr;  // ceil(width / 2^shift_x) x ceil(height / 2^shift_y); empty: no colour
+  GrayImage luma;          // 0.299 red + 0.587 green + 0.114 blue, full resolution
+  GrayImage cb, cr;        // ceil(width / 2^shift_x) x ceil(height / 2^shift_y); empty: no colour
   int chroma_shift_x = 0;  // 0, 1, 2
   int chroma_shift_y = 0;  // 0, 1, 2
 

@@ -36,8 +36,8 @@ ImageSize ReadPnmSize(const std::filesystem::path& path);
 ImageSize ReadBmpSize(const std::filesystem::path& path);
 
 // As what: kLuma decodes no chroma where the file holds luma apart; the same luma as kPlanes. Where
-// the file does not hold luma and chroma (CMYK, RGB), or chroma in a grid that Picture does not know,
-// both give the planes of its red, green and blue.
+// the file does not hold luma and chroma (CMYK, RGB), or chroma in a grid that Picture does not
+// know, both give the planes of its red, green and blue.
 enum class JpegContent { kLuma, kPlanes };
 Picture DecodeJpegPlanes(const std::filesystem::path& path, JpegContent content);
 Image<uint8_t> DecodeJpeg(const std::filesystem::path& path);

@@ -201,8 +201,8 @@ Picture DecodeAsStored(const std::filesystem::path& path, const ImageSize& size,
   picture.chroma_shift_x = ShiftOf(y.h_samp_factor, cb.h_samp_factor);
   picture.chroma_shift_y = ShiftOf(y.v_samp_factor, cb.v_samp_factor);
   picture.luma = GrayImage(size.width, size.height);
-  picture.cb = picture.cr = GrayImage(static_cast<int>(cb.downsampled_width),
-                                      static_cast<int>(cb.downsampled_height));
+  picture.cb = picture.cr =
+      GrayImage(static_cast<int>(cb.downsampled_width), static_cast<int>(cb.downsampled_height));
   RowOfBlocks blocks(decoder->info);
   GrayImage* const planes[3] = {&picture.luma, &picture.cb, &picture.cr};
   if (!ReadPlanes(decoder, &blocks, planes) || decoder->errors.is_damaged) {

@@ -48,8 +48,8 @@ class TestSurvey : public PictureSource {
 
   bool stores_seapoints = true, stores_matches = true;
   std::map<int, int> num_decoded, num_decoded_luma;  // by image_idx
-  std::map<std::pair<int, int>, int> num_asked;  // by image_idx, smaller first
-  int num_found = 0, num_matched = 0;            // SeaPoints, matches: not stored ones
+  std::map<std::pair<int, int>, int> num_asked;      // by image_idx, smaller first
+  int num_found = 0, num_matched = 0;                // SeaPoints, matches: not stored ones
 
  private:
   const World world_;

@@ -1,8 +1,8 @@
-// Any bytes as a pair of tiny pictures, their cameras, poses, seeds, cells and options: no number of
-// threads and no instruction set changes the result, and every point of it is a point.
+// Any bytes as a pair of tiny pictures, their cameras, poses, seeds, cells and options: no number
+// of threads and no instruction set changes the result, and every point of it is a point.
 //
-// Input: numbers for all of that in turn (zeros when there are too few), then pixels. Picture 1 shows
-// a plane that picture 2 sees, so that something matches.
+// Input: numbers for all of that in turn (zeros when there are too few), then pixels. Picture 1
+// shows a plane that picture 2 sees, so that something matches.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -23,7 +23,8 @@ class Numbers {
   double Between(double low, double high) { return low + (high - low) * Byte() / 255; }
   // Any byte of what is left, over again when there are too few.
   uint8_t Pixel(size_t index) const {
-    return next_ < size_ ? data_[next_ + index % (size_ - next_)] : static_cast<uint8_t>(index * 37);
+    return next_ < size_ ? data_[next_ + index % (size_ - next_)]
+                         : static_cast<uint8_t>(index * 37);
   }
 
  private:
@@ -37,7 +38,9 @@ Camera AnyCamera(Numbers* numbers) {
   for (int id = numbers->Below(32); info == nullptr; id = (id + 1) % 32) info = FindCameraModel(id);
   const int width = 12 + numbers->Below(140), height = 12 + numbers->Below(140);
   // From 130 degrees of view to a few.
-  Camera camera = MakeCamera(info->model, width * std::exp(numbers->Between(-1.5, numbers->Below(3) ? 0.5 : 2.3)), width, height);
+  Camera camera = MakeCamera(
+      info->model, width * std::exp(numbers->Between(-1.5, numbers->Below(3) ? 0.5 : 2.3)), width,
+      height);
   const size_t first = info->has_single_focal ? 1 : 2;
   camera.params[first] += numbers->Between(-0.2, 0.2) * width;
   camera.params[first + 1] += numbers->Between(-0.2, 0.2) * height;
@@ -90,7 +93,8 @@ void AnyOptions(Numbers* numbers, PartialDensificationOptions* options) {
 void AnyCells(Numbers* numbers, Case* c) {
   const Camera& camera = c->input.view1.camera;
   c->input.cells = CellsOf(camera, c->options);
-  if (numbers->Below(2)) c->input.cells = CellGrid(camera.width, camera.height, 1 + numbers->Below(60));
+  if (numbers->Below(2))
+    c->input.cells = CellGrid(camera.width, camera.height, 1 + numbers->Below(60));
   c->input.in_full = numbers->Below(4) == 0;
   const int kinds = numbers->Below(4);
   const double range = std::exp(numbers->Between(-8, 8));

@@ -19,7 +19,7 @@ namespace {
 
 struct JpegKind {
   const char* name;
-  int luma_x, luma_y;      // sampling factors of luma; those of the chroma are 1
+  int luma_x, luma_y;  // sampling factors of luma; those of the chroma are 1
   bool progressive = false;
   int restart_interval = 0;  // blocks (MCU)
   J_COLOR_SPACE stored = JCS_YCbCr;
@@ -134,8 +134,8 @@ TEST_P(ImagePlanes, SameLumaWithAndWithoutColorAndTheSameColors) {
     EXPECT_EQ(picture.luma.data, ReadGrayImage(path).data);
     EXPECT_EQ(picture.HasColor(), kind.stored != JCS_GRAYSCALE);
     // libjpeg repeats chroma that it does not interpolate: of four pixels a sample, or two samples.
-    const bool repeats = picture.chroma_shift_x == 2 ||
-                         (picture.chroma_shift_x == 1 && picture.cb.width <= 2);
+    const bool repeats =
+        picture.chroma_shift_x == 2 || (picture.chroma_shift_x == 1 && picture.cb.width <= 2);
     const Picture oracle = repeats ? WithRepeatedChroma(picture) : picture;
     ExpectClose(ColorOf(oracle), ReadColorImage(path), repeats ? 0 : 2, 0.6);
   }
@@ -201,8 +201,8 @@ TEST(ImagePlanes, OpenCvDecodesTheSameColors) {
   for (const JpegKind& kind : kKinds) {
     if (kind.stored == JCS_YCCK || kind.luma_x > 2) continue;
     WriteJpeg(dir / "a.jpg", kind, 97, 65);
-    cv::Mat oracle = cv::imread((dir / "a.jpg").string(),
-                                cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+    cv::Mat oracle =
+        cv::imread((dir / "a.jpg").string(), cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
     ASSERT_EQ(oracle.cols, 97);
     const ColorImage color = ColorOf(ReadPicture(dir / "a.jpg"));
     for (int y = 0; y < color.height; ++y) {
