@@ -69,12 +69,15 @@ int Run(const std::vector<std::string>& arguments) {
   throw UsageError("'" + name + "' is no command; 'colmap_seapoint help' lists them");
 }
 
-// Pictures of tens of megabytes come and go. By default each would be fresh memory, zeroed by the
-// system page by page (a third of the CPU time of densifying 12-megapixel pictures) and given back:
-// it is kept for the next one.
+// Buffers of megabytes come and go. By default each would be fresh memory, zeroed by the system
+// page by page and given back: what is freed is kept for the next one. Not so the largest, planes
+// of pictures and clouds: what little stays between them would leave holes that the next one does
+// not fit into, and memory would grow with the number of pictures.
 void KeepFreedMemory() {
 #ifdef __GLIBC__
-  mallopt(M_MMAP_MAX, 0);
+  constexpr int kNotKept = 10'000'000;  // bytes: at 12 megapixels, 8 % more for 200 pictures than
+                                        // for 20, for some 3 % more CPU time than with all kept
+  mallopt(M_MMAP_THRESHOLD, kNotKept);
   mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
   mallopt(M_ARENA_MAX, 1);
 #endif
