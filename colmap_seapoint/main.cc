@@ -75,8 +75,7 @@ int Run(const std::vector<std::string>& arguments) {
 // not fit into, and memory would grow with the number of pictures.
 void KeepFreedMemory() {
 #ifdef __GLIBC__
-  constexpr int kNotKept = 10'000'000;  // bytes: at 12 megapixels, 8 % more for 200 pictures than
-                                        // for 20, for some 3 % more CPU time than with all kept
+  constexpr int kNotKept = 10'000'000;  // bytes
   mallopt(M_MMAP_THRESHOLD, kNotKept);
   mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
   mallopt(M_ARENA_MAX, 1);
