@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "colmap_seapoint/base/camera_projection.h"
 #include "colmap_seapoint/base/error.h"
 
 namespace colmap_seapoint {
@@ -31,90 +32,9 @@ bool HasSingleFocal(CameraModel model) {
   return kModels[static_cast<size_t>(model)].has_single_focal;
 }
 
-bool IsFisheye(CameraModel model) {
-  return model == CameraModel::kOpenCVFisheye || model == CameraModel::kSimpleRadialFisheye ||
-         model == CameraModel::kRadialFisheye || model == CameraModel::kThinPrismFisheye;
-}
-
-// A factor of the radius and its derivative by the squared radius.
-struct Radial {
-  double factor;
-  double derivative;
-};
-
-Radial Polynomial(double s, double k1, double k2 = 0, double k3 = 0, double k4 = 0) {
-  return {1 + s * (k1 + s * (k2 + s * (k3 + s * k4))),
-          k1 + s * (2 * k2 + s * (3 * k3 + s * 4 * k4))};
-}
-
-Radial Rational(double s, const double* p) {
-  const Radial numerator = Polynomial(s, p[4], p[5], p[8]);
-  const Radial denominator = Polynomial(s, p[9], p[10], p[11]);
-  const double factor = numerator.factor / denominator.factor;
-  return {factor, (numerator.derivative - factor * denominator.derivative) / denominator.factor};
-}
-
-// The three cases, their thresholds, and the sign of the first one are COLMAP's.
-Radial FovFactor(double r2, double omega) {
-  constexpr double kEpsilon = 1e-4;
-  const double omega2 = omega * omega;
-  if (omega2 < kEpsilon) return {omega2 * r2 / 3 - omega2 / 12 + 1, omega2 / 3};
-  const double t = std::tan(omega / 2);
-  if (r2 < kEpsilon) {
-    return {-2 * t * (4 * r2 * t * t - 3) / (3 * omega), -8 * t * t * t / (3 * omega)};
-  }
-  const double r = std::sqrt(r2);
-  const double a = 2 * t;
-  const double factor = std::atan(r * a) / (r * omega);
-  return {factor, (a / (1 + a * a * r2) / omega - factor) / (2 * r2)};
-}
-
-// Every model maps a point w of a plane (z = 1 for perspective models; the direction's angle from
-// the axis for fisheye models) to radial(|w|^2) * w + tangential and prism terms.
-Radial RadialFactor(CameraModel model, const double* p, double s) {
-  switch (model) {
-    case CameraModel::kSimplePinhole:
-    case CameraModel::kPinhole:
-      return {1, 0};
-    case CameraModel::kSimpleRadial:
-    case CameraModel::kSimpleRadialFisheye:
-      return Polynomial(s, p[3]);
-    case CameraModel::kRadial:
-    case CameraModel::kRadialFisheye:
-      return Polynomial(s, p[3], p[4]);
-    case CameraModel::kOpenCV:
-      return Polynomial(s, p[4], p[5]);
-    case CameraModel::kOpenCVFisheye:
-      return Polynomial(s, p[4], p[5], p[6], p[7]);
-    case CameraModel::kFullOpenCV:
-      return Rational(s, p);
-    case CameraModel::kFov:
-      return FovFactor(s, p[4]);
-    case CameraModel::kThinPrismFisheye:
-      return Polynomial(s, p[4], p[5], p[8], p[9]);
-  }
-  return {1, 0};
-}
-
-bool HasTangential(CameraModel model) {
-  return model == CameraModel::kOpenCV || model == CameraModel::kFullOpenCV ||
-         model == CameraModel::kThinPrismFisheye;
-}
-
-Eigen::Vector2d Distort(CameraModel model, const double* p, const Eigen::Vector2d& w) {
-  const double u = w.x(), v = w.y(), s = u * u + v * v;
-  Eigen::Vector2d d = RadialFactor(model, p, s).factor * w;
-  if (HasTangential(model)) {
-    d.x() += 2 * p[6] * u * v + p[7] * (s + 2 * u * u);
-    d.y() += 2 * p[7] * u * v + p[6] * (s + 2 * v * v);
-  }
-  if (model == CameraModel::kThinPrismFisheye) d += s * Eigen::Vector2d(p[10], p[11]);
-  return d;
-}
-
 Eigen::Matrix2d DistortJacobian(CameraModel model, const double* p, const Eigen::Vector2d& w) {
   const double u = w.x(), v = w.y();
-  const Radial radial = RadialFactor(model, p, w.squaredNorm());
+  const Radial<double> radial = RadialFactor(model, p, w.squaredNorm());
   Eigen::Matrix2d jacobian =
       radial.factor * Eigen::Matrix2d::Identity() + 2 * radial.derivative * w * w.transpose();
   if (HasTangential(model)) {
@@ -215,12 +135,7 @@ double Camera::PrincipalY() const { return params[HasSingleFocal(model) ? 2 : 3]
 
 std::optional<Eigen::Vector2d> Camera::ImgFromCam(const Eigen::Vector3d& point_in_cam) const {
   if (!(point_in_cam.z() > 0)) return std::nullopt;
-  Eigen::Vector2d w = point_in_cam.head<2>() / point_in_cam.z();
-  if (IsFisheye(model)) {
-    const double r = w.norm();
-    if (r > std::numeric_limits<double>::epsilon()) w *= std::atan(r) / r;
-  }
-  const Eigen::Vector2d d = Distort(model, params.data(), w);
+  const Eigen::Vector2d d = DistortedDirection(model, params.data(), point_in_cam);
   const Eigen::Vector2d pixel(FocalX() * d.x() + PrincipalX(), FocalY() * d.y() + PrincipalY());
   if (!pixel.allFinite()) return std::nullopt;
   return pixel;
