@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
-#include <system_error>
 
-#include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/sparse_model.h"
-#include "colmap_seapoint/commands/adjust_by_mapper.h"
+#include "colmap_seapoint/commands/bundle_adjustment.h"
 #include "colmap_seapoint/commands/retriangulate.h"
 #include "colmap_seapoint/io/colmap_model.h"
-#include "colmap_seapoint/io/subprocess.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -19,20 +15,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kMinPictures = 3;
-constexpr double kMaxErrorGrowth = 1.001;         // the adjuster's cost is robust, ours is not
-constexpr double kMaxErrorGrowthOfMapper = 1.02;  // which takes observations in and out
-// With two residuals each, below COLMAP's 50,000 (BundleAdjustmentOptions).
-constexpr size_t kMaxObservationsOfAdjuster = 24000;
-constexpr char kMaxIterations[] = "300";           // 50 or 100 in COLMAP: it stops on the way
 constexpr double kMaxPrincipalPointChange = 0.05;  // share of the longer side
-
-struct Adjustment {
-  const char* name;
-  bool frees_principal_point;
-  double max_focal_ratio;  // or its inverse
-};
-constexpr Adjustment kDistortion = {"distortion", false, 2.0};
-constexpr Adjustment kPrincipalPoint = {"principal_point", true, 1.2};
+constexpr double kMaxFocalRatio = 2.0;              // or its inverse
+constexpr double kMaxFocalRatioOnceMore = 1.2;
 
 bool IsWithinRatio(double after, double before, double max_ratio) {
   return after <= max_ratio * before && before <= max_ratio * after;  // false for NaN
@@ -52,20 +37,10 @@ std::string LensFault(const Camera& before, const Camera& after, double max_foca
   return "";
 }
 
-std::string Fault(const SparseModel& before, const SparseModel& after, double max_focal_ratio,
-                  double max_error_growth) {
-  if (after.images.size() != before.images.size() ||
-      after.cameras.size() != before.cameras.size()) {
-    return "pictures were lost";
-  }
+std::string Fault(const SparseModel& before, const SparseModel& after, double max_focal_ratio) {
   for (const auto& [id, camera] : before.cameras) {
-    const auto found = after.cameras.find(id);
-    if (found == after.cameras.end()) return "a camera was lost";
-    const std::string fault = LensFault(camera, found->second, max_focal_ratio);
+    const std::string fault = LensFault(camera, after.cameras.at(id), max_focal_ratio);
     if (!fault.empty()) return fault;
-  }
-  if (ReprojectionError(after) > max_error_growth * ReprojectionError(before)) {
-    return "the error grew";
   }
   return "";
 }
@@ -81,74 +56,16 @@ std::string Outcome(const SparseModel& before, const SparseModel& after) {
   return text;
 }
 
-// The bundle adjuster leaves the points' errors as they were before it.
-void UpdatePointErrors(SparseModel* model) {
-  std::map<uint64_t, double> sums;
-  for (const PosedImage& image : model->images) {
-    const Camera& camera = model->cameras.at(image.camera_id);
-    for (size_t i = 0; i < image.points2D.size(); ++i) {
-      const uint64_t id = image.point3D_ids[i];
-      if (id == kNoPoint3D) continue;
-      const auto pixel = camera.ImgFromCam(image.cam_from_world * model->points3D.at(id).xyz);
-      if (pixel) sums[id] += (*pixel - image.points2D[i]).norm();
-    }
-  }
-  for (auto& [id, point] : model->points3D) {
-    if (!point.track.empty()) point.error = sums[id] / static_cast<double>(point.track.size());
-  }
-}
-
-size_t NumObservations(const SparseModel& model) {
-  size_t count = 0;
-  for (const auto& [id, point] : model.points3D) count += point.track.size();
-  return count;
-}
-
-SubprocessResult RunBundleAdjuster(const ColmapProgram& colmap, const Adjustment& adjustment,
-                                   const fs::path& model, const fs::path& output,
-                                   const fs::path& log) {
-  return RunSubprocess(
-      colmap.path,
-      {"bundle_adjuster", "--input_path", model.string(), "--output_path", output.string(),
-       "--BundleAdjustment.refine_principal_point", adjustment.frees_principal_point ? "1" : "0",
-       "--BundleAdjustment.max_num_iterations", kMaxIterations},
-      log, {});
-}
-
-SubprocessResult RunMapperAgain(const ColmapProgram& colmap, const AdjustmentJob& job,
-                                const Adjustment& adjustment, const SparseModel& model,
-                                const fs::path& output, const fs::path& log) {
-  MapperOptions options = job.options;
-  options["Mapper.ba_refine_extra_params"] = "1";
-  options["Mapper.ba_refine_principal_point"] = adjustment.frees_principal_point ? "1" : "0";
-  options["Mapper.ba_global_max_num_iterations"] = kMaxIterations;
-  return AdjustByMapper(colmap, model, {job.database_path, job.image_path, options, output, log});
-}
-
 // "" when the adjusted model has taken the model's place; else why not.
-std::string Adjust(const ColmapProgram& colmap, const AdjustmentJob& job,
-                   const Adjustment& adjustment, const fs::path& model) {
+std::string Adjust(bool frees_principal_point, double max_focal_ratio, const fs::path& model) {
   const SparseModel before = ReadSparseModel(model);
   if (before.images.size() < kMinPictures) return "too few pictures";
-  const bool by_mapper = NumObservations(before) > kMaxObservationsOfAdjuster;
-  const fs::path adjusted = model.string() + ".adjusted";
-  const fs::path log = job.log_path.string() + "_" + adjustment.name + ".log";
-  std::error_code error;
-  fs::remove_all(adjusted, error);
-  fs::create_directories(adjusted);
-  const auto result = by_mapper ? RunMapperAgain(colmap, job, adjustment, before, adjusted, log)
-                                : RunBundleAdjuster(colmap, adjustment, model, adjusted, log);
-  std::string fault;
-  if (!result.Succeeded() || !IsSparseModel(adjusted)) {
-    fault = "the adjustment failed (" + result.Text() + ")";
-  } else {
-    SparseModel after = ReadSparseModel(adjusted);
-    UpdatePointErrors(&after);
-    fault = Fault(before, after, adjustment.max_focal_ratio,
-                  by_mapper ? kMaxErrorGrowthOfMapper : kMaxErrorGrowth);
-    if (fault.empty()) WriteSparseModelBinary(model, after);
-  }
-  fs::remove_all(adjusted, error);
+  BundleAdjustmentOptions options;
+  options.refine_principal_point = frees_principal_point;
+  SparseModel after = before;
+  if (!AdjustBundle(options, &after)) return "the adjustment failed";
+  const std::string fault = Fault(before, after, max_focal_ratio);
+  if (fault.empty()) WriteSparseModelBinary(model, after);
   return fault;
 }
 
@@ -174,19 +91,26 @@ double ReprojectionError(const SparseModel& model) {
 LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
                           const fs::path& model) {
   const SparseModel before = ReadSparseModel(model);
-  LensAdjustment result;
   std::string refused;
-  const auto adjust = [&](const Adjustment& adjustment) {
-    const std::string fault = Adjust(colmap, job, adjustment, model);
-    if (!fault.empty()) refused += std::string("; ") + adjustment.name + " refused: " + fault;
-    return fault.empty();
+  const auto refuse = [&](const char* what, const std::string& fault) {
+    if (!fault.empty()) refused += std::string("; ") + what + " refused: " + fault;
   };
-  if (job.frees_distortion) result.distortion_is_sound = adjust(kDistortion);
-  const std::string fault = Retriangulate(
-      colmap, {job.database_path, job.image_path, job.options, job.log_path}, model);
-  if (!fault.empty()) refused += "; triangulation refused: " + fault;
-  // It frees the distortion too.
-  if (job.frees_principal_point && result.distortion_is_sound) adjust(kPrincipalPoint);
+  bool frees_principal_point = job.frees_principal_point;
+  std::string fault = Adjust(frees_principal_point, kMaxFocalRatio, model);
+  if (!fault.empty() && frees_principal_point) {
+    refuse("principal point", fault);
+    frees_principal_point = false;
+    fault = Adjust(frees_principal_point, kMaxFocalRatio, model);
+  }
+  refuse("lens", fault);
+  LensAdjustment result;
+  result.distortion_is_sound = fault.empty() || !job.frees_distortion;
+  refuse("triangulation",
+         Retriangulate(colmap, {job.database_path, job.image_path, job.options, job.log_path},
+                       model));
+  if (fault.empty()) {
+    refuse("second adjustment", Adjust(frees_principal_point, kMaxFocalRatioOnceMore, model));
+  }
   result.outcome = Outcome(before, ReadSparseModel(model)) + refused;
   return result;
 }
