@@ -95,13 +95,7 @@ LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
   const auto refuse = [&](const char* what, const std::string& fault) {
     if (!fault.empty()) refused += std::string("; ") + what + " refused: " + fault;
   };
-  bool frees_principal_point = job.frees_principal_point;
-  std::string fault = Adjust(frees_principal_point, kMaxFocalRatio, model);
-  if (!fault.empty() && frees_principal_point) {
-    refuse("principal point", fault);
-    frees_principal_point = false;
-    fault = Adjust(frees_principal_point, kMaxFocalRatio, model);
-  }
+  const std::string fault = Adjust(job.frees_principal_point, kMaxFocalRatio, model);
   refuse("lens", fault);
   LensAdjustment result;
   result.distortion_is_sound = fault.empty() || !job.frees_distortion;
@@ -109,7 +103,7 @@ LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
          Retriangulate(colmap, {job.database_path, job.image_path, job.options, job.log_path},
                        model));
   if (fault.empty()) {
-    refuse("second adjustment", Adjust(frees_principal_point, kMaxFocalRatioOnceMore, model));
+    refuse("second adjustment", Adjust(job.frees_principal_point, kMaxFocalRatioOnceMore, model));
   }
   result.outcome = Outcome(before, ReadSparseModel(model)) + refused;
   return result;
