@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kHalfPi = 1.57079632679489661923;
 
-constexpr std::array<CameraModelInfo, 11> kModels = {{
+constexpr std::array<CameraModelInfo, 18> kModels = {{
     {CameraModel::kSimplePinhole, "SIMPLE_PINHOLE", 3, true},
     {CameraModel::kPinhole, "PINHOLE", 4, false},
     {CameraModel::kSimpleRadial, "SIMPLE_RADIAL", 4, true},
@@ -26,6 +26,13 @@ constexpr std::array<CameraModelInfo, 11> kModels = {{
     {CameraModel::kSimpleRadialFisheye, "SIMPLE_RADIAL_FISHEYE", 4, true},
     {CameraModel::kRadialFisheye, "RADIAL_FISHEYE", 5, true},
     {CameraModel::kThinPrismFisheye, "THIN_PRISM_FISHEYE", 12, false},
+    {CameraModel::kRadTanThinPrismFisheye, "RAD_TAN_THIN_PRISM_FISHEYE", 16, false},
+    {CameraModel::kSimpleDivision, "SIMPLE_DIVISION", 4, true},
+    {CameraModel::kDivision, "DIVISION", 5, false},
+    {CameraModel::kSimpleFisheye, "SIMPLE_FISHEYE", 3, true},
+    {CameraModel::kFisheye, "FISHEYE", 4, false},
+    {CameraModel::kEucm, "EUCM", 6, false},
+    {CameraModel::kEquirectangular, "EQUIRECTANGULAR", 2, false},
 }};
 
 bool HasSingleFocal(CameraModel model) {
@@ -33,21 +40,12 @@ bool HasSingleFocal(CameraModel model) {
 }
 
 Eigen::Matrix2d DistortJacobian(CameraModel model, const double* p, const Eigen::Vector2d& w) {
-  const double u = w.x(), v = w.y();
   const Radial<double> radial = RadialFactor(model, p, w.squaredNorm());
-  Eigen::Matrix2d jacobian =
+  const Eigen::Matrix2d jacobian =
       radial.factor * Eigen::Matrix2d::Identity() + 2 * radial.derivative * w * w.transpose();
-  if (HasTangential(model)) {
-    const double p1 = p[6], p2 = p[7];
-    Eigen::Matrix2d tangential;
-    tangential << 2 * p1 * v + 6 * p2 * u, 2 * p1 * u + 2 * p2 * v,  //
-        2 * p2 * v + 2 * p1 * u, 2 * p2 * u + 6 * p1 * v;
-    jacobian += tangential;
-  }
-  if (model == CameraModel::kThinPrismFisheye) {
-    jacobian += 2 * Eigen::Vector2d(p[10], p[11]) * w.transpose();
-  }
-  return jacobian;
+  const Aside<double> aside = AsideOf(model, p);
+  if (!AsideIsOfRadial(model)) return jacobian + aside.Jacobian(w);
+  return (Eigen::Matrix2d::Identity() + aside.Jacobian(radial.factor * w)) * jacobian;
 }
 
 // Newton with step halving. Leaves *w where the residual stopped falling; returns the residual.
@@ -105,6 +103,16 @@ std::optional<Eigen::Vector2d> Undistort(CameraModel model, const double* p,
   return w;
 }
 
+// Longitude and latitude (downwards) of a point of the plane z = 1, radians, and back: nullopt for
+// what lies aside or behind.
+Eigen::Vector2d AnglesOf(const Eigen::Vector2d& w) {
+  return {std::atan(w.x()), std::atan2(w.y(), std::hypot(w.x(), 1.0))};
+}
+std::optional<Eigen::Vector2d> PointAtAngles(const Eigen::Vector2d& angles) {
+  if (!(angles.cwiseAbs().maxCoeff() < kHalfPi - 1e-9)) return std::nullopt;
+  return Eigen::Vector2d(std::tan(angles.x()), std::tan(angles.y()) / std::cos(angles.x()));
+}
+
 }  // namespace
 
 const CameraModelInfo* FindCameraModel(int model_id) {
@@ -128,14 +136,27 @@ std::string CameraModelNames() {
   return names;
 }
 
-double Camera::FocalX() const { return params[0]; }
-double Camera::FocalY() const { return params[HasSingleFocal(model) ? 0 : 1]; }
-double Camera::PrincipalX() const { return params[HasSingleFocal(model) ? 1 : 2]; }
-double Camera::PrincipalY() const { return params[HasSingleFocal(model) ? 2 : 3]; }
+double Camera::FocalX() const {
+  return model == CameraModel::kEquirectangular ? params[0] / (4 * kHalfPi) : params[0];
+}
+double Camera::FocalY() const {
+  if (model == CameraModel::kEquirectangular) return params[1] / (2 * kHalfPi);
+  return params[HasSingleFocal(model) ? 0 : 1];
+}
+double Camera::PrincipalX() const {
+  if (model == CameraModel::kEquirectangular) return params[0] / 2;
+  return params[HasSingleFocal(model) ? 1 : 2];
+}
+double Camera::PrincipalY() const {
+  if (model == CameraModel::kEquirectangular) return params[1] / 2;
+  return params[HasSingleFocal(model) ? 2 : 3];
+}
 
 std::optional<Eigen::Vector2d> Camera::ImgFromCam(const Eigen::Vector3d& point_in_cam) const {
   if (!(point_in_cam.z() > 0)) return std::nullopt;
-  const Eigen::Vector2d d = DistortedDirection(model, params.data(), point_in_cam);
+  const Eigen::Vector2d d = model == CameraModel::kEquirectangular
+                                ? AnglesOf(point_in_cam.head<2>() / point_in_cam.z())
+                                : DistortedDirection(model, params.data(), point_in_cam);
   const Eigen::Vector2d pixel(FocalX() * d.x() + PrincipalX(), FocalY() * d.y() + PrincipalY());
   if (!pixel.allFinite()) return std::nullopt;
   return pixel;
@@ -145,6 +166,7 @@ std::optional<Eigen::Vector2d> Camera::CamFromImg(const Eigen::Vector2d& pixel) 
   const Eigen::Vector2d target((pixel.x() - PrincipalX()) / FocalX(),
                                (pixel.y() - PrincipalY()) / FocalY());
   if (!target.allFinite()) return std::nullopt;
+  if (model == CameraModel::kEquirectangular) return PointAtAngles(target);
   const double tolerance = 1e-3 / std::max(std::abs(FocalX()), std::abs(FocalY()));
   const std::optional<Eigen::Vector2d> w = Undistort(model, params.data(), target, tolerance);
   if (!w || !w->allFinite()) return std::nullopt;
@@ -174,6 +196,10 @@ Camera ScaledCamera(const Camera& camera, int width, int height) {
   scaled.width = width;
   scaled.height = height;
   const bool single = HasSingleFocal(camera.model);
+  if (camera.model == CameraModel::kEquirectangular) {
+    scaled.params = {x_scale * camera.params[0], y_scale * camera.params[1]};
+    return scaled;
+  }
   scaled.params[0] *= single ? 0.5 * (x_scale + y_scale) : x_scale;
   if (!single) scaled.params[1] *= y_scale;
   const size_t principal = single ? 1 : 2;
@@ -189,12 +215,17 @@ Camera MakeCamera(CameraModel model, double focal, int width, int height) {
   camera.width = width;
   camera.height = height;
   camera.params.assign(static_cast<size_t>(info.num_params), 0.0);
+  if (model == CameraModel::kEquirectangular) {
+    camera.params = {static_cast<double>(width), static_cast<double>(height)};
+    return camera;
+  }
   size_t i = 0;
   camera.params[i++] = focal;
   if (!info.has_single_focal) camera.params[i++] = focal;
   camera.params[i++] = width / 2.0;
   camera.params[i] = height / 2.0;
   if (model == CameraModel::kFov) camera.params[4] = 1e-2;  // COLMAP's: 0 is singular
+  if (model == CameraModel::kEucm) camera.params[5] = 1;    // COLMAP's too: a pinhole
   return camera;
 }
 

@@ -1,4 +1,5 @@
-// COLMAP's camera models 0 to 10 (all of COLMAP 3.8): intrinsics, projection and its inverse.
+// COLMAP's camera models, all 18 of COLMAP 4.1 (3.8 has 0 to 10): intrinsics, projection and its
+// inverse.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,24 +12,32 @@ namespace colmap_seapoint {
 
 // Numbers and parameter order are COLMAP's.
 enum class CameraModel : int {
-  kSimplePinhole = 0,        // f, cx, cy
-  kPinhole = 1,              // fx, fy, cx, cy
-  kSimpleRadial = 2,         // f, cx, cy, k
-  kRadial = 3,               // f, cx, cy, k1, k2
-  kOpenCV = 4,               // fx, fy, cx, cy, k1, k2, p1, p2
-  kOpenCVFisheye = 5,        // fx, fy, cx, cy, k1, k2, k3, k4
-  kFullOpenCV = 6,           // fx, fy, cx, cy, k1, k2, p1, p2, k3, k4, k5, k6
-  kFov = 7,                  // fx, fy, cx, cy, omega
-  kSimpleRadialFisheye = 8,  // f, cx, cy, k
-  kRadialFisheye = 9,        // f, cx, cy, k1, k2
-  kThinPrismFisheye = 10,    // fx, fy, cx, cy, k1, k2, p1, p2, k3, k4, sx1, sy1
+  kSimplePinhole = 0,            // f, cx, cy
+  kPinhole = 1,                  // fx, fy, cx, cy
+  kSimpleRadial = 2,             // f, cx, cy, k
+  kRadial = 3,                   // f, cx, cy, k1, k2
+  kOpenCV = 4,                   // fx, fy, cx, cy, k1, k2, p1, p2
+  kOpenCVFisheye = 5,            // fx, fy, cx, cy, k1, k2, k3, k4
+  kFullOpenCV = 6,               // fx, fy, cx, cy, k1, k2, p1, p2, k3, k4, k5, k6
+  kFov = 7,                      // fx, fy, cx, cy, omega
+  kSimpleRadialFisheye = 8,      // f, cx, cy, k
+  kRadialFisheye = 9,            // f, cx, cy, k1, k2
+  kThinPrismFisheye = 10,        // fx, fy, cx, cy, k1, k2, p1, p2, k3, k4, sx1, sy1
+  kRadTanThinPrismFisheye = 11,  // fx, fy, cx, cy, k0 ... k5, p0, p1, s0 ... s3 (COLMAP 3.11)
+  kSimpleDivision = 12,          // f, cx, cy, k (this and the next three: 4.0)
+  kDivision = 13,                // fx, fy, cx, cy, k
+  kSimpleFisheye = 14,           // f, cx, cy
+  kFisheye = 15,                 // fx, fy, cx, cy
+  kEucm = 16,                    // fx, fy, cx, cy, alpha, beta (4.1)
+  kEquirectangular = 17,         // width, height (4.1): the half in front of the camera is used
 };
 
 struct CameraModelInfo {
   CameraModel model;
   const char* name;  // COLMAP's, e.g. "OPENCV"
   int num_params;
-  bool has_single_focal;  // params[0] = f, (cx, cy) = params[1..2]; else fx, fy, cx, cy
+  // params[0] = f, (cx, cy) = params[1..2]; else fx, fy, cx, cy. (Neither for kEquirectangular.)
+  bool has_single_focal;
 };
 
 // nullptr when this program does not know the model.
@@ -45,6 +54,7 @@ struct Camera {
   std::vector<double> params;
   bool has_prior_focal_length = false;
 
+  // Pixels; of kEquirectangular: pixels a radian, on the axis.
   double FocalX() const;
   double FocalY() const;
   double MeanFocal() const { return 0.5 * (FocalX() + FocalY()); }

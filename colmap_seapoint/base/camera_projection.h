@@ -13,7 +13,9 @@ namespace colmap_seapoint {
 
 inline bool IsFisheye(CameraModel model) {
   return model == CameraModel::kOpenCVFisheye || model == CameraModel::kSimpleRadialFisheye ||
-         model == CameraModel::kRadialFisheye || model == CameraModel::kThinPrismFisheye;
+         model == CameraModel::kRadialFisheye || model == CameraModel::kThinPrismFisheye ||
+         model == CameraModel::kRadTanThinPrismFisheye || model == CameraModel::kSimpleFisheye ||
+         model == CameraModel::kFisheye;
 }
 
 // A factor of the radius and its derivative by the squared radius.
@@ -25,9 +27,9 @@ struct Radial {
 
 template <typename T>
 Radial<T> Polynomial(const T& s, const T& k1, const T& k2 = T(0), const T& k3 = T(0),
-                     const T& k4 = T(0)) {
-  return {1.0 + s * (k1 + s * (k2 + s * (k3 + s * k4))),
-          k1 + s * (2.0 * k2 + s * (3.0 * k3 + s * 4.0 * k4))};
+                     const T& k4 = T(0), const T& k5 = T(0), const T& k6 = T(0)) {
+  return {1.0 + s * (k1 + s * (k2 + s * (k3 + s * (k4 + s * (k5 + s * k6))))),
+          k1 + s * (2.0 * k2 + s * (3.0 * k3 + s * (4.0 * k4 + s * (5.0 * k5 + s * 6.0 * k6))))};
 }
 
 template <typename T>
@@ -57,8 +59,26 @@ Radial<T> FovFactor(const T& r2, const T& omega) {
   return {factor, (a / (1.0 + a * a * r2) / omega - factor) / (2.0 * r2)};
 }
 
+// The smaller root of k |w|^2 f^2 - f + 1 = 0: f w lies where f w / (1 + k |f w|^2) is w. Not a
+// number where there is none.
+template <typename T>
+Radial<T> DivisionFactor(const T& s, const T& k) {
+  using std::sqrt;
+  const T root = sqrt(1.0 - 4.0 * k * s);
+  return {2.0 / (1.0 + root), 4.0 * k / (root * (1.0 + root) * (1.0 + root))};
+}
+
+template <typename T>
+Radial<T> EucmFactor(const T& s, const T& alpha, const T& beta) {
+  using std::sqrt;
+  const T root = sqrt(beta * s + 1.0);
+  const T factor = 1.0 / (alpha * root + 1.0 - alpha);
+  return {factor, -alpha * beta / (2.0 * root) * factor * factor};
+}
+
 // Every model maps a point w of a plane (z = 1 for perspective models; the direction's angle from
-// the axis for fisheye models) to radial(|w|^2) * w + tangential and prism terms.
+// the axis for fisheye models) to radial(|w|^2) * w + tangential and prism terms; these are of w,
+// for kRadTanThinPrismFisheye of radial(|w|^2) * w.
 template <typename T>
 Radial<T> RadialFactor(CameraModel model, const T* p, const T& s) {
   switch (model) {
@@ -81,28 +101,74 @@ Radial<T> RadialFactor(CameraModel model, const T* p, const T& s) {
       return FovFactor(s, p[4]);
     case CameraModel::kThinPrismFisheye:
       return Polynomial(s, p[4], p[5], p[8], p[9]);
+    case CameraModel::kRadTanThinPrismFisheye:
+      return Polynomial(s, p[4], p[5], p[6], p[7], p[8], p[9]);
+    case CameraModel::kSimpleDivision:
+      return DivisionFactor(s, p[3]);
+    case CameraModel::kDivision:
+      return DivisionFactor(s, p[4]);
+    case CameraModel::kEucm:
+      return EucmFactor(s, p[4], p[5]);
+    case CameraModel::kSimpleFisheye:
+    case CameraModel::kFisheye:
+    case CameraModel::kEquirectangular:
+      break;
   }
   return {T(1), T(0)};
 }
 
-inline bool HasTangential(CameraModel model) {
-  return model == CameraModel::kOpenCV || model == CameraModel::kFullOpenCV ||
-         model == CameraModel::kThinPrismFisheye;
+// What is added to a point: by decentred lenses (Brown's p1, p2), and by tilted ones, of the
+// squared radius (s1) and of its square (s2).
+template <typename T>
+struct Aside {
+  using Vector2 = Eigen::Matrix<T, 2, 1>;
+  using Matrix2 = Eigen::Matrix<T, 2, 2>;
+
+  T p1 = T(0), p2 = T(0);
+  Vector2 s1 = Vector2::Zero(), s2 = Vector2::Zero();
+
+  Vector2 Of(const Vector2& w) const {
+    const T u = w.x(), v = w.y(), s = w.squaredNorm();
+    const Vector2 tangential(2.0 * p1 * u * v + p2 * (s + 2.0 * u * u),
+                             2.0 * p2 * u * v + p1 * (s + 2.0 * v * v));
+    return tangential + s * s1 + s * s * s2;
+  }
+  Matrix2 Jacobian(const Vector2& w) const {
+    const T u = w.x(), v = w.y(), s = w.squaredNorm();
+    Matrix2 tangential;
+    tangential << 2.0 * p1 * v + 6.0 * p2 * u, 2.0 * p1 * u + 2.0 * p2 * v,  //
+        2.0 * p2 * v + 2.0 * p1 * u, 2.0 * p2 * u + 6.0 * p1 * v;
+    return tangential + 2.0 * (s1 + 2.0 * s * s2) * w.transpose();
+  }
+};
+
+template <typename T>
+Aside<T> AsideOf(CameraModel model, const T* p) {
+  switch (model) {
+    case CameraModel::kOpenCV:
+    case CameraModel::kFullOpenCV:
+      return {p[6], p[7]};
+    case CameraModel::kThinPrismFisheye:
+      return {p[6], p[7], {p[10], p[11]}};
+    case CameraModel::kRadTanThinPrismFisheye:  // its p0 is the others' p2
+      return {p[11], p[10], {p[12], p[14]}, {p[13], p[15]}};
+    default:
+      return {};
+  }
+}
+
+inline bool AsideIsOfRadial(CameraModel model) {
+  return model == CameraModel::kRadTanThinPrismFisheye;
 }
 
 template <typename T>
 Eigen::Matrix<T, 2, 1> Distort(CameraModel model, const T* p, const Eigen::Matrix<T, 2, 1>& w) {
-  const T u = w.x(), v = w.y(), s = u * u + v * v;
-  Eigen::Matrix<T, 2, 1> d = RadialFactor(model, p, s).factor * w;
-  if (HasTangential(model)) {
-    d.x() += 2.0 * p[6] * u * v + p[7] * (s + 2.0 * u * u);
-    d.y() += 2.0 * p[7] * u * v + p[6] * (s + 2.0 * v * v);
-  }
-  if (model == CameraModel::kThinPrismFisheye) d += s * Eigen::Matrix<T, 2, 1>(p[10], p[11]);
-  return d;
+  const Eigen::Matrix<T, 2, 1> d = RadialFactor<T>(model, p, w.squaredNorm()).factor * w;
+  return d + AsideOf(model, p).Of(AsideIsOfRadial(model) ? d : w);
 }
 
-// Of a direction in the camera frame, z > 0: pixel = focal lengths * this + principal point.
+// Of a direction in the camera frame, z > 0, by any model but kEquirectangular: pixel = focal
+// lengths * this + principal point.
 template <typename T>
 Eigen::Matrix<T, 2, 1> DistortedDirection(CameraModel model, const T* p,
                                           const Eigen::Matrix<T, 3, 1>& direction) {

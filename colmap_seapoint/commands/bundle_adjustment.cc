@@ -34,12 +34,11 @@ struct ReprojectionResidual {
                   T* residual) const {
     using Vector3 = Eigen::Matrix<T, 3, 1>;
     const Eigen::Map<const Eigen::Quaternion<T>> cam_from_world(rotation);
-    const Vector3 in_cam = cam_from_world * Eigen::Map<const Vector3>(xyz) +
-                           Eigen::Map<const Vector3>(translation);
+    const Vector3 in_cam =
+        cam_from_world * Eigen::Map<const Vector3>(xyz) + Eigen::Map<const Vector3>(translation);
     const Eigen::Matrix<T, 2, 1> d = DistortedDirection(model, params, in_cam);
     residual[0] = weight * (params[0] * d.x() + params[num_focals] - pixel.x());
-    residual[1] =
-        weight * (params[num_focals - 1] * d.y() + params[num_focals + 1] - pixel.y());
+    residual[1] = weight * (params[num_focals - 1] * d.y() + params[num_focals + 1] - pixel.y());
     return true;
   }
 };
@@ -60,10 +59,14 @@ ceres::CostFunction* MakeReprojectionCost(const Camera& camera, const Eigen::Vec
       return MakeCost<4>(residual);
     case 5:
       return MakeCost<5>(residual);
+    case 6:
+      return MakeCost<6>(residual);
     case 8:
       return MakeCost<8>(residual);
-    default:
+    case 12:
       return MakeCost<12>(residual);
+    default:
+      return MakeCost<16>(residual);
   }
 }
 
@@ -101,6 +104,7 @@ class Adjustment {
     auto* loss = new ceres::SoftLOneLoss(1);  // the problem deletes it once
     for (PosedImage& image : model_->images) {
       Camera& camera = model_->cameras.at(image.camera_id);
+      if (camera.model == CameraModel::kEquirectangular) continue;  // has no lens
       Rigid3d& pose = image.cam_from_world;
       for (size_t i = 0; i < image.points2D.size(); ++i) {
         const uint64_t id = image.point3D_ids[i];
@@ -127,11 +131,9 @@ class Adjustment {
                                num_params, {static_cast<int>(idx), static_cast<int>(idx) + 1}));
       return;
     }
-    const double sigma =
-        options_.principal_point_sigma * std::max(camera->width, camera->height);
+    const double sigma = options_.principal_point_sigma * std::max(camera->width, camera->height);
     auto* cost = new ceres::DynamicAutoDiffCostFunction<PrincipalPointPrior>(
-        new PrincipalPointPrior{
-            idx, {camera->PrincipalX(), camera->PrincipalY()}, 1 / sigma});
+        new PrincipalPointPrior{idx, {camera->PrincipalX(), camera->PrincipalY()}, 1 / sigma});
     cost->AddParameterBlock(num_params);
     cost->SetNumResiduals(2);
     problem_.AddResidualBlock(cost, nullptr, camera->params.data());

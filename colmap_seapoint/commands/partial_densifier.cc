@@ -33,6 +33,13 @@ void Validate(const PartialDensifierOptions& options) {
 // The model as the pictures see it.
 SparseModel ReadModel(const PartialDensifierOptions& options) {
   SparseModel model = ReadSparseModel(options.input_path, ModelContent::kPosesAndPoints);
+  for (const auto& [id, camera] : model.cameras) {
+    if (camera.model != CameraModel::kEquirectangular) continue;
+    throw Error(options.input_path,
+                "camera " + std::to_string(id) +
+                    " is EQUIRECTANGULAR: two panoramas cannot be rectified to one another",
+                "cut its pictures into perspective ones and give their model");
+  }
   const int num_scaled =
       ScaleCamerasToPictures(options.image_path, options.run.num_threads, &model);
   if (num_scaled > 0) {

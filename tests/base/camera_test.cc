@@ -18,6 +18,7 @@ Camera TestCamera(CameraModel model, const std::vector<double>& distortion, bool
   Camera camera = MakeCamera(model, focal, 1360, 1024);
   const CameraModelInfo* info = FindCameraModel(static_cast<int>(model));
   const size_t first = info->has_single_focal ? 3 : 4;
+  if (model == CameraModel::kEquirectangular) return camera;  // has nothing else
   if (off_centre) {
     camera.params[first - 2] += 11.5;
     camera.params[first - 1] -= 7.25;
@@ -81,7 +82,16 @@ INSTANTIATE_TEST_SUITE_P(
         RoundTrip{CameraModel::kRadialFisheye, {0.05, -0.01}, 80},
         RoundTrip{CameraModel::kThinPrismFisheye,
                   {0.03, -0.01, 1e-3, -2e-3, 0.004, -0.001, 2e-3, 1e-3},
-                  70}));
+                  70},
+        RoundTrip{CameraModel::kRadTanThinPrismFisheye,
+                  {0.03, -0.01, 4e-3, -1e-3, 5e-4, -1e-4, 2e-3, -3e-3, 2e-3, -1e-3, 3e-3, 5e-4},
+                  70},
+        RoundTrip{CameraModel::kSimpleDivision, {-0.25}, 80},
+        RoundTrip{CameraModel::kSimpleDivision, {0.2}, 45},
+        RoundTrip{CameraModel::kDivision, {-0.4}, 80}, RoundTrip{CameraModel::kDivision, {0}, 80},
+        RoundTrip{CameraModel::kSimpleFisheye, {}, 89}, RoundTrip{CameraModel::kFisheye, {}, 89},
+        RoundTrip{CameraModel::kEucm, {0.6, 1.2}, 80}, RoundTrip{CameraModel::kEucm, {0, 1}, 80},
+        RoundTrip{CameraModel::kEquirectangular, {}, 89}));
 
 // What a camera sees at (x, y), it sees at (k x, k y) in a picture k times as large.
 TEST_P(CameraRoundTripTest, ScaledByHalfOrThreefoldItSeesTheSame) {
@@ -184,8 +194,37 @@ TEST(CameraTest, KnownValues) {
   EXPECT_NEAR(flat.ImgFromCam({1, 0, 1})->x(), 680 + 500 * (1 + 25e-6 / 3 - 25e-6 / 12), 1e-9);
 }
 
+// By hand from the definitions that COLMAP's source states.
+TEST(CameraTest, KnownValuesOfTheNewerModels) {
+  // Division: x = p / (1 + k |p|^2) holds the picture's p; here p = (0.5, 0): 0.5 / 0.9 = 0.5556.
+  const Camera division = TestCamera(CameraModel::kDivision, {-0.4}, false, 1000);
+  EXPECT_NEAR(division.ImgFromCam({0.5 / 0.9, 0, 1})->x(), 680 + 1000 * 0.5, 1e-9);
+  EXPECT_EQ(TestCamera(CameraModel::kSimpleDivision, {0.5}, false).ImgFromCam({1, 1, 1}),
+            std::nullopt);  // 4 k r^2 > 1
+  // 1 / (0.6 sqrt(1.2 * 0.25 + 1) + 0.4)
+  const Camera eucm = TestCamera(CameraModel::kEucm, {0.6, 1.2}, false, 1000);
+  EXPECT_NEAR(eucm.ImgFromCam({0, 1, 2})->y(), 512 + 1000 * 0.5 / (0.6 * std::sqrt(1.3) + 0.4),
+              1e-9);
+  const Camera fisheye = TestCamera(CameraModel::kSimpleFisheye, {}, false, 400);
+  EXPECT_NEAR(fisheye.ImgFromCam(Direction(60, 0))->x(), 680 + 400 * kPi / 3, 1e-9);
+  // theta = atan(0.5); radial first, then p0 (along x), s0 and s1 of the point so found.
+  const Camera aria = TestCamera(CameraModel::kRadTanThinPrismFisheye,
+                                 {0.1, 0, 0, 0, 0, 0, 0.01, 0, 0.02, 0.03, 0, 0}, false, 1000);
+  const double theta = std::atan(0.5), x = theta * (1 + 0.1 * theta * theta), r2 = x * x;
+  EXPECT_NEAR(aria.ImgFromCam({0.5, 0, 1})->x(),
+              680 + 1000 * (x + 0.01 * 3 * r2 + 0.02 * r2 + 0.03 * r2 * r2), 1e-9);
+  EXPECT_NEAR(aria.ImgFromCam({0.5, 0, 1})->y(), 512, 1e-9);
+  // The whole sphere: 45 degrees to the right is an eighth of the width, 45 down a quarter of the
+  // height.
+  const Camera sphere = MakeCamera(CameraModel::kEquirectangular, 900, 1600, 800);
+  EXPECT_NEAR(sphere.ImgFromCam({1, 0, 1})->x(), 1000, 1e-9);
+  EXPECT_NEAR(sphere.ImgFromCam({0, 3, 3})->y(), 600, 1e-9);
+  EXPECT_NEAR(sphere.ImgFromCam({1, std::sqrt(2.0), 1})->y(), 600, 1e-9);
+  EXPECT_EQ(sphere.CamFromImg({1300, 400}), std::nullopt);  // behind
+}
+
 TEST(CameraTest, BehindOrNotFiniteIsNothing) {
-  for (int id = 0; id <= 10; ++id) {
+  for (int id = 0; id <= 17; ++id) {
     const Camera camera = MakeCamera(static_cast<CameraModel>(id), 900, 1360, 1024);
     EXPECT_FALSE(camera.ImgFromCam({0.1, 0.1, -1}));
     EXPECT_FALSE(camera.ImgFromCam({0.1, 0.1, 0}));
@@ -220,21 +259,23 @@ TEST(CameraTest, FoldedLensGivesTheRayNearestTheAxis) {
 }
 
 TEST(CameraTest, ModelTable) {
-  for (int id = 0; id <= 10; ++id) {
+  for (int id = 0; id <= 17; ++id) {
     const CameraModelInfo* info = FindCameraModel(id);
     ASSERT_NE(info, nullptr);
     EXPECT_EQ(static_cast<int>(info->model), id);
     EXPECT_EQ(FindCameraModel(std::string(info->name)), info);
     const Camera camera = MakeCamera(info->model, 900, 1360, 1024);
     EXPECT_EQ(camera.params.size(), static_cast<size_t>(info->num_params));
-    EXPECT_EQ(camera.FocalX(), 900);
-    EXPECT_EQ(camera.FocalY(), 900);
+    if (info->model != CameraModel::kEquirectangular) {
+      EXPECT_EQ(camera.FocalX(), 900);
+      EXPECT_EQ(camera.FocalY(), 900);
+    }
     EXPECT_EQ(camera.PrincipalX(), 680);
     EXPECT_EQ(camera.PrincipalY(), 512);
   }
   EXPECT_EQ(FindCameraModel(-1), nullptr);
-  EXPECT_EQ(FindCameraModel(11), nullptr);
-  EXPECT_EQ(FindCameraModel("EUCM"), nullptr);
+  EXPECT_EQ(FindCameraModel(18), nullptr);
+  EXPECT_EQ(FindCameraModel("UNKNOWN"), nullptr);
   EXPECT_EQ(CameraModelNames().substr(0, 23), "SIMPLE_PINHOLE, PINHOLE");
 }
 

@@ -101,6 +101,16 @@ TEST_F(Densifier, SameBytesForOneAndTwoThreadsAndWithADatabase) {
   EXPECT_TRUE(ReadBytes(folder_ / "dense" / "fused.ply") == matched);
 }
 
+TEST_F(Densifier, PanoramasAreRefused) {
+  for (auto& [id, camera] : model_.cameras) {
+    camera = MakeCamera(CameraModel::kEquirectangular, 1, camera.width, camera.height);
+    camera.camera_id = id;
+  }
+  const CliResult result = Densify();
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.Text().find("EQUIRECTANGULAR"), std::string::npos) << result.Text();
+}
+
 TEST_F(Densifier, WriteDebugDrawsEveryPair) {
   const std::vector<std::string> sequential = {"--PartialDensification.redundancy", "sequential",
                                                "--PartialDensification.completion", "0"};

@@ -41,6 +41,7 @@ Camera AnyCamera(Numbers* numbers) {
   Camera camera = MakeCamera(
       info->model, width * std::exp(numbers->Between(-1.5, numbers->Below(3) ? 0.5 : 2.3)), width,
       height);
+  if (info->model == CameraModel::kEquirectangular) return camera;
   const size_t first = info->has_single_focal ? 1 : 2;
   camera.params[first] += numbers->Between(-0.2, 0.2) * width;
   camera.params[first + 1] += numbers->Between(-0.2, 0.2) * height;

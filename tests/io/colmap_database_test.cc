@@ -213,8 +213,8 @@ TEST_F(DatabaseTest, HostileImagesAndCameras) {
   EXPECT_ERROR(db_.ReadCameras(), "camera 1 has damaged parameters");
   Execute(path_, "UPDATE cameras SET width = -1");
   EXPECT_ERROR(db_.ReadCameras(), "impossible size");
-  Execute(path_, "UPDATE cameras SET model = 17");
-  EXPECT_ERROR(db_.ReadCameras(), "unknown camera model 17");
+  Execute(path_, "UPDATE cameras SET model = 18");
+  EXPECT_ERROR(db_.ReadCameras(), "unknown camera model 18");
 }
 
 TEST_F(DatabaseTest, TransactionsLandTogetherOrNotAtAll) {

@@ -65,10 +65,11 @@ Viewpoint StandAt(const Camera& camera, const Eigen::Vector3d& center,
   return {camera, {rotation, -(rotation * center)}};
 }
 
-std::vector<CameraModel> AllCameraModels() {
+std::vector<CameraModel> RectifiableCameraModels() {
   std::vector<CameraModel> models;
   for (int id = 0; id < 100; ++id) {
-    if (const CameraModelInfo* info = FindCameraModel(id)) models.push_back(info->model);
+    const CameraModelInfo* info = FindCameraModel(id);
+    if (info && info->model != CameraModel::kEquirectangular) models.push_back(info->model);
   }
   return models;
 }
@@ -109,6 +110,20 @@ Camera MildCamera(CameraModel model, double focal, int width, int height) {
       break;
     case CameraModel::kThinPrismFisheye:
       distortion = {0.02, -0.01, 1e-3, -1e-3, 0.003, -0.001, 1e-3, 1e-3};
+      break;
+    case CameraModel::kRadTanThinPrismFisheye:
+      distortion = {0.02, -0.01, 0.003, -0.001, 5e-4, -1e-4, 1e-3, -1e-3, 1e-3, -5e-4, 1e-3, 5e-4};
+      break;
+    case CameraModel::kSimpleDivision:
+    case CameraModel::kDivision:
+      distortion = {-0.1};
+      break;
+    case CameraModel::kEucm:
+      distortion = {0.55, 1.1};
+      break;
+    case CameraModel::kSimpleFisheye:
+    case CameraModel::kFisheye:
+    case CameraModel::kEquirectangular:
       break;
   }
   std::copy(distortion.begin(), distortion.end(),

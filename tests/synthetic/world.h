@@ -52,8 +52,8 @@ struct Viewpoint {
 Viewpoint StandAt(const Camera& camera, const Eigen::Vector3d& center,
                   const Eigen::Vector3d& turn_deg = Eigen::Vector3d::Zero());
 
-// All that the program knows.
-std::vector<CameraModel> AllCameraModels();
+// All that the program knows but kEquirectangular.
+std::vector<CameraModel> RectifiableCameraModels();
 // A camera of any model with mild distortion, its principal point off the centre.
 Camera MildCamera(CameraModel model, double focal, int width, int height);
 
