@@ -24,8 +24,6 @@ class PictureSource {
   // Throws Error for a picture that is missing, unreadable or of another size than its camera.
   // Called from several threads at once; the others are not.
   virtual Picture ReadPicture(int image_idx) = 0;
-  // The same luma, where it can be had for less without the colours.
-  virtual GrayImage ReadLuma(int image_idx) { return ReadPicture(image_idx).luma; }
   // nullopt: none are stored. Throws Error for damaged ones.
   virtual std::optional<Features> ReadSeaPoints(int image_idx) = 0;
   virtual Features FindSeaPoints(const GrayImage& picture) = 0;

@@ -22,36 +22,27 @@ void PictureCache::MakeRoom() {
   }
 }
 
-PictureCache::PendingPicture PictureCache::Start(int image_idx, bool with_color) {
+PictureCache::PendingPicture PictureCache::Start(int image_idx) {
   for (auto entry = pictures_.begin(); entry != pictures_.end(); ++entry) {
     if (entry->image_idx != image_idx) continue;
-    if (with_color && !entry->with_color) {
-      pictures_.erase(entry);
-      break;
-    }
     std::rotate(entry, entry + 1, pictures_.end());
     return pictures_.back().pending;
   }
   MakeRoom();
   auto num_bytes = std::make_shared<std::atomic<size_t>>(0);
-  const auto read = [source = source_, image_idx, with_color, num_bytes] {
-    auto picture = std::make_shared<Picture>();
-    if (with_color) {
-      *picture = source->ReadPicture(image_idx);
-    } else {
-      picture->luma = source->ReadLuma(image_idx);
-    }
+  const auto read = [source = source_, image_idx, num_bytes] {
+    auto picture = std::make_shared<const Picture>(source->ReadPicture(image_idx));
     *num_bytes = picture->NumBytes();
-    return std::shared_ptr<const Picture>(picture);
+    return picture;
   };
   PendingPicture pending = std::async(std::launch::async, read).share();
-  pictures_.push_back({image_idx, with_color, num_bytes, pending});
+  pictures_.push_back({image_idx, num_bytes, pending});
   return pending;
 }
 
-std::shared_ptr<const Picture> PictureCache::Wait(int image_idx, bool with_color) {
+std::shared_ptr<const Picture> PictureCache::Get(int image_idx) {
   try {
-    return Start(image_idx, with_color).get();
+    return Start(image_idx).get();
   } catch (const Error& error) {
     LeaveOut(image_idx, error.Finding());
     return nullptr;
@@ -65,7 +56,7 @@ Features PictureCache::ObtainSeaPoints(int image_idx) {
     LeaveOut(image_idx, error.Finding());
     return {};
   }
-  const auto picture = GetLuma(image_idx);
+  const auto picture = Get(image_idx);
   return picture ? source_->FindSeaPoints(picture->luma) : Features();
 }
 

@@ -20,18 +20,16 @@ class PictureCache {
  public:
   explicit PictureCache(PictureSource* source) : source_(source) {}
 
-  // nullptr when the picture cannot be read: the reason goes to LeftOut(), once. Of the second
-  // picture of a pair only the luma is needed, which costs less; it is the same with colour.
-  std::shared_ptr<const Picture> Get(int image_idx) { return Wait(image_idx, true); }
-  std::shared_ptr<const Picture> GetLuma(int image_idx) { return Wait(image_idx, false); }
+  // nullptr when the picture cannot be read: the reason goes to LeftOut(), once. With colour,
+  // though the second picture of a pair needs none: most are the first one of another pair too.
+  std::shared_ptr<const Picture> Get(int image_idx);
   // Empty features when they cannot be had, and the reason likewise. Where none are stored, they
   // are found in the picture, which is decoded once for that and for densification.
   std::shared_ptr<const Features> GetSeaPoints(int image_idx);
   // idx1 in image_idx1's SeaPoints, idx2 in image_idx2's.
   std::shared_ptr<const FeatureMatches> GetMatches(int image_idx1, int image_idx2);
   // Starts reading in the background, if it is not there or under way.
-  void Prefetch(int image_idx) { Start(image_idx, true); }
-  void PrefetchLuma(int image_idx) { Start(image_idx, false); }
+  void Prefetch(int image_idx) { Start(image_idx); }
 
   const std::vector<LeftOutPicture>& LeftOut() const { return left_out_; }
 
@@ -45,15 +43,13 @@ class PictureCache {
 
   struct Entry {
     int image_idx;
-    bool with_color;
     std::shared_ptr<std::atomic<size_t>> num_bytes;  // 0: not there yet, or unreadable
     PendingPicture pending;
   };
 
   // For one more picture. What is kept depends on what is there already, results do not.
   void MakeRoom();
-  PendingPicture Start(int image_idx, bool with_color);
-  std::shared_ptr<const Picture> Wait(int image_idx, bool with_color);
+  PendingPicture Start(int image_idx);
   Features ObtainSeaPoints(int image_idx);
   void LeaveOut(int image_idx, const std::string& reason);
 

@@ -94,16 +94,16 @@ std::vector<SequenceState::SecondCandidate> SequenceState::SecondCandidates(int 
 int SequenceState::SelectSecond(int first) {
   PairReport report = NewReport(first, -1, "sequence");
   const int right = RightOf(first);
-  if (right >= 0) cache_.PrefetchLuma(ImageIdxAt(right));
+  if (right >= 0) cache_.Prefetch(ImageIdxAt(right));
   if (!cache_.Get(ImageIdxAt(first))) {
     report.skipped = "the picture cannot be read";
     report_.pairs.push_back(report);
     return NumPictures();
   }
-  if (right >= 0 && cache_.GetLuma(ImageIdxAt(right))) return right;
+  if (right >= 0 && cache_.Get(ImageIdxAt(right))) return right;
   report.skipped = "no following picture matches it";
   for (const auto& [second, parallax] : SecondCandidates(first)) {
-    if (!cache_.GetLuma(ImageIdxAt(second))) continue;
+    if (!cache_.Get(ImageIdxAt(second))) continue;
     const auto matches = MatchesOf(first, second);
     if (static_cast<int>(matches->size()) < options_.min_num_seeds) continue;
     const double motion = MeanMotion(SeaPointsAt(first)->points, SeaPointsAt(second)->points,
@@ -219,7 +219,7 @@ bool SequenceState::RunPair(int first, int second, const Overlap& overlap,
   const Timer timer;
   densified_pairs_.insert(Ordered(first, second));
   const auto picture1 = cache_.Get(ImageIdxAt(first));
-  const auto picture2 = cache_.GetLuma(ImageIdxAt(second));
+  const auto picture2 = cache_.Get(ImageIdxAt(second));
   if (!picture1 || !picture2) {
     report->skipped = "a picture cannot be read";
     return false;
@@ -289,7 +289,7 @@ void SequenceState::ShowPair(int first, int second, const Overlap& overlap,
 void SequenceState::DensifyNewAreas(int first, int second) {
   // Decoded while this pair is densified: most often they are the next pair.
   if (second + 1 < num_track_) cache_.Prefetch(ImageIdxAt(second + 1));
-  if (second + 2 < num_track_) cache_.PrefetchLuma(ImageIdxAt(second + 2));
+  if (second + 2 < num_track_) cache_.Prefetch(ImageIdxAt(second + 2));
   PairReport report = NewReport(first, second, "sequence");
   const Overlap overlap = AssessOverlap(first);
   for (const SeaPointLabel label : overlap.labels) {

@@ -66,19 +66,8 @@ std::string ModelPictures::Check(int image_idx) const {
 
 Picture ModelPictures::ReadPicture(int image_idx) {
   Picture picture = colmap_seapoint::ReadPicture(PathOf(image_idx));
-  RequireSize(image_idx, picture.luma);
-  return picture;
-}
-
-GrayImage ModelPictures::ReadLuma(int image_idx) {
-  GrayImage luma = ReadGrayImage(PathOf(image_idx));
-  RequireSize(image_idx, luma);
-  return luma;
-}
-
-void ModelPictures::RequireSize(int image_idx, const GrayImage& luma) const {
-  const std::string problem = CheckSize(image_idx, luma.width, luma.height);
-  if (problem.empty()) return;
+  const std::string problem = CheckSize(image_idx, picture.luma.width, picture.luma.height);
+  if (problem.empty()) return picture;
   throw Error(PathOf(image_idx).string(), problem,
               "give the pictures that the model was made from, reduced or in full");
 }

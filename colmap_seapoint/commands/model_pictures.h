@@ -33,7 +33,6 @@ class ModelPictures : public PictureSource {
   int NumInDatabase() const { return static_cast<int>(in_database_.size()); }
 
   Picture ReadPicture(int image_idx) override;
-  GrayImage ReadLuma(int image_idx) override;
   std::optional<Features> ReadSeaPoints(int image_idx) override;
   Features FindSeaPoints(const GrayImage& picture) override;
   // Damaged matches are as good as none; a warning says so.
@@ -49,7 +48,6 @@ class ModelPictures : public PictureSource {
   const PosedImage& ImageAt(int image_idx) const;
   std::filesystem::path PathOf(int image_idx) const;
   // Throws Error when the picture is of another size than its camera.
-  void RequireSize(int image_idx, const GrayImage& luma) const;
   // "" or the reason.
   std::string CheckSize(int image_idx, int width, int height) const;
   // Whether the database has SeaPoints of ours that ReadSeaPoints can return.

@@ -95,13 +95,6 @@ Picture TestSurvey::ReadPicture(int image_idx) {
   return PictureOf(pictures_[static_cast<size_t>(image_idx)]);
 }
 
-GrayImage TestSurvey::ReadLuma(int image_idx) {
-  if (image_idx == unreadable_) throw Error("a.jpg", "is cut short", "copy it again");
-  const std::lock_guard<std::mutex> lock(mutex_);
-  ++num_decoded_luma[image_idx];
-  return LumaOf(pictures_[static_cast<size_t>(image_idx)]);
-}
-
 std::optional<Features> TestSurvey::ReadSeaPoints(int image_idx) {
   if (!stores_seapoints) return std::nullopt;
   return features_[static_cast<size_t>(image_idx)];

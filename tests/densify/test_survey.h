@@ -32,7 +32,6 @@ class TestSurvey : public PictureSource {
   void MakeUnreadable(int image_idx) { unreadable_ = image_idx; }
 
   Picture ReadPicture(int image_idx) override;
-  GrayImage ReadLuma(int image_idx) override;
   std::optional<Features> ReadSeaPoints(int image_idx) override;
   // Knows the picture by its pixels.
   Features FindSeaPoints(const GrayImage& picture) override;
@@ -47,7 +46,7 @@ class TestSurvey : public PictureSource {
   const Eigen::Vector3d& LandmarkOf(int image_idx, size_t seapoint_idx) const;
 
   bool stores_seapoints = true, stores_matches = true;
-  std::map<int, int> num_decoded, num_decoded_luma;  // by image_idx
+  std::map<int, int> num_decoded;  // by image_idx
   std::map<std::pair<int, int>, int> num_asked;      // by image_idx, smaller first
   int num_found = 0, num_matched = 0;                // SeaPoints, matches: not stored ones
 
