@@ -177,8 +177,13 @@ void RectMap::SourceRow(int j, int begin, int end, float* x, float* y) const {
 
 RectPicture RectMap::Rectify(const GrayImage& source, const BlockMask& blocks,
                              int num_threads) const {
-  RectPicture picture{window_, GrayImage(window_.width, window_.height)};
-  picture.gray.data.resize(picture.gray.data.size() + RectPicture::kSlack);
+  RectPicture picture{window_, GrayImage()};
+  picture.gray.width = window_.width;
+  picture.gray.height = window_.height;
+  picture.gray.data.assign(
+      static_cast<size_t>(window_.width) * static_cast<size_t>(window_.height) +
+          RectPicture::kSlack,
+      0);
   ParallelFor(num_threads, blocks.Rows(), [&](int64_t band) {
     const int row = static_cast<int>(band);
     const int j_end = std::min(window_.height, (row + 1) * BlockMask::kHeight);
