@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <set>
 #include <system_error>
 
@@ -9,8 +10,8 @@
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/commands/feature_extractor.h"
 #include "colmap_seapoint/commands/partial_densifier.h"
-#include "colmap_seapoint/commands/read_rig.h"
 #include "colmap_seapoint/commands/prepare_database.h"
+#include "colmap_seapoint/commands/read_rig.h"
 #include "colmap_seapoint/commands/reconstruction_summary.h"
 #include "colmap_seapoint/commands/run_mapper.h"
 #include "colmap_seapoint/commands/second_chance.h"
@@ -29,7 +30,7 @@ namespace fs = std::filesystem;
 constexpr size_t kMaxImagesForAllPairs = 50;
 // Raise it whenever the same options give other results than before.
 constexpr char kMatchingVersion[] = "4";
-constexpr char kMapperVersion[] = "9";
+constexpr char kMapperVersion[] = "10";
 constexpr char kDensificationVersion[] = "6";
 
 std::string HashText(const std::string& text) { return HashBytes(text.data(), text.size()); }
@@ -52,8 +53,8 @@ class Reconstruction {
   explicit Reconstruction(const AutomaticReconstructorOptions& options)
       : options_(options),
         colmap_(FindColmap(options.colmap_path)),
-        first_round_(OptionsOfRound(colmap_, true, options.run.random_seed, options.mapper)),
-        later_rounds_(OptionsOfRound(colmap_, false, options.run.random_seed, options.mapper)),
+        first_round_(OptionsOfRound(Round::kFirst)),
+        later_rounds_(OptionsOfRound(Round::kLater)),
         workspace_(fs::absolute(options.workspace_path).lexically_normal()),
         image_path_(fs::absolute(options.image_path).lexically_normal()),
         database_path_(workspace_ / "database.db"),
@@ -72,6 +73,8 @@ class Reconstruction {
   RunReport WriteReport();
 
  private:
+  MapperOptions OptionsOfRound(Round round) const;
+  std::optional<MapperOptions> GlobalRound() const;
   std::string PicturesFingerprint(const std::vector<ReadablePicture>& pictures) const;
   bool MatchesAllPairs() const;
   bool FindsLens() const;
@@ -94,6 +97,19 @@ class Reconstruction {
   std::string second_chance_fingerprint_, mapper_fingerprint_;
   std::vector<ModelSummary> models_;
 };
+
+// Where the lens is ours to find, the models are adjusted by us afterwards (adjust_lens.h); where
+// it is given, the mapper's own adjustment is the last one.
+MapperOptions Reconstruction::OptionsOfRound(Round round) const {
+  const std::string effort = FindsLens() ? options_.quality : "archive";
+  return colmap_seapoint::OptionsOfRound(colmap_, round, effort, options_.run.random_seed,
+                                         options_.mapper);
+}
+
+std::optional<MapperOptions> Reconstruction::GlobalRound() const {
+  if (options_.quality != "field" || !FindsLens() || !options_.mapper.empty()) return std::nullopt;
+  return OptionsOfGlobalMapper(colmap_, options_.run.random_seed);
+}
 
 bool Reconstruction::MatchesAllPairs() const {
   if (options_.matcher != "auto") return options_.matcher == "exhaustive";
@@ -207,12 +223,12 @@ bool Reconstruction::FindsLens() const {
 // The mapper's work depends on what the database holds, and on the mapper.
 std::string Reconstruction::MapperFingerprint() const {
   const auto begun = state_.Read("database");
-  return HashText(kMapperVersion + DatabaseFingerprint(database_path_) +
-                  (begun ? begun->fingerprint : "") + colmap_.version +
-                  (FindsLens() ? "lens" : "") +
-                  (options_.adjust_principal_point ? "adjusted" : "") +
-                  OptionsFingerprint({first_round_.begin(), first_round_.end()}) +
-                  OptionsFingerprint({later_rounds_.begin(), later_rounds_.end()}));
+  return HashText(
+      kMapperVersion + DatabaseFingerprint(database_path_) + (begun ? begun->fingerprint : "") +
+      colmap_.version + (FindsLens() ? "lens" : "") +
+      (options_.adjust_principal_point ? "adjusted" : "") + (GlobalRound() ? "global" : "") +
+      OptionsFingerprint({first_round_.begin(), first_round_.end()}) +
+      OptionsFingerprint({later_rounds_.begin(), later_rounds_.end()}));
 }
 
 void Reconstruction::MapSparsely() {
@@ -231,9 +247,9 @@ void Reconstruction::MapSparsely() {
     state_.Forget("mapper");
     {
       StageTimer timer(&part, "mapper");
-      RunMapper(colmap_,
-                {database_path_, image_path_, sparse, workspace_ / "report", first_round_,
-                 later_rounds_, FindsLens(), options_.adjust_principal_point, matched_pictures_});
+      RunMapper(colmap_, {database_path_, image_path_, sparse, workspace_ / "report", GlobalRound(),
+                          first_round_, later_rounds_, FindsLens(), options_.adjust_principal_point,
+                          matched_pictures_});
     }
     state_.Finish("mapper", mapper_fingerprint_, part);
   }
@@ -329,9 +345,8 @@ RunReport Reconstruction::WriteReport() {
 }
 
 void Validate(const AutomaticReconstructorOptions& options) {
-  for (const std::string& problem :
-       {options.reader.Check(), options.extraction.Check(), options.densification.Check(),
-        CheckRig(options.rig)}) {
+  for (const std::string& problem : {options.reader.Check(), options.extraction.Check(),
+                                     options.densification.Check(), CheckRig(options.rig)}) {
     if (!problem.empty()) throw UsageError(problem);
   }
   if (!fs::is_directory(options.image_path)) {
@@ -347,6 +362,12 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
   table->AddRequired("workspace_path", &workspace_path,
                      "folder for database.db, sparse/, dense/ and report/; created when missing");
   table->Add("colmap_path", &colmap_path, "the colmap program: a path, or a name on PATH", "ours");
+  table->Add(
+      kQualityOption, &quality,
+      "what posing may cost. field: a coarse mapper, or global_mapper where this COLMAP has "
+      "it, for all that the lens adjustment mends afterwards; survey: the mapper adjusts "
+      "more often; archive: COLMAP's own adjustments, twice the SeaPoints, SIFT beside rBRIEF",
+      "ours", {"field", "survey", "archive"});
   table->Add("matcher", &matcher,
              "which pairs are tried; auto = all pairs of up to " +
                  std::to_string(kMaxImagesForAllPairs) + " pictures, else sequential",
@@ -362,6 +383,13 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
   matching.Bind(table);
   densification.Bind(table);
   run.Bind(table);
+}
+
+void AutomaticReconstructorOptions::Preset() {
+  if (quality != "archive") return;
+  extraction.min_num_features *= 2;
+  extraction.max_num_features *= 2;
+  extraction.descriptor = "sift";
 }
 
 ForeignOptions AutomaticReconstructorOptions::Foreign() {

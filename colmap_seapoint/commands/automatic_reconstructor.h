@@ -19,6 +19,7 @@ struct AutomaticReconstructorOptions {
   std::string image_path;
   std::string workspace_path;
   std::string colmap_path = "colmap";
+  std::string quality = "survey";
   std::string matcher = "auto";
   bool adjust_principal_point = true;
   std::string rig;
@@ -31,6 +32,7 @@ struct AutomaticReconstructorOptions {
   RunOptions run;
 
   void Bind(OptionTable* table);
+  void Preset();
   ForeignOptions Foreign();
 };
 

@@ -21,6 +21,21 @@ constexpr MapperDefault kEveryRound[] = {
     {"Mapper.abs_pose_min_num_inliers", "20"},
 };
 
+// The models only have to lead the adjustment of our own (adjust_lens.h) to the right valley: all
+// three efforts end with the same lens and centres, to tenths of a millimetre on exact surveys.
+constexpr MapperDefault kSurveyEffort[] = {
+    {"Mapper.ba_global_images_ratio", "1.4"},      {"Mapper.ba_global_frames_ratio", "1.4"},
+    {"Mapper.ba_global_points_ratio", "1.4"},      {"Mapper.ba_global_max_refinements", "2"},
+    {"Mapper.ba_global_max_num_iterations", "20"}, {"Mapper.ba_local_max_refinements", "1"},
+    {"Mapper.ba_local_max_num_iterations", "10"},
+};
+constexpr MapperDefault kFieldEffort[] = {
+    {"Mapper.ba_global_images_ratio", "2"},        {"Mapper.ba_global_frames_ratio", "2"},
+    {"Mapper.ba_global_points_ratio", "2"},        {"Mapper.ba_global_max_refinements", "1"},
+    {"Mapper.ba_global_max_num_iterations", "10"}, {"Mapper.ba_local_max_refinements", "1"},
+    {"Mapper.ba_local_max_num_iterations", "5"},   {"Mapper.ba_local_num_images", "4"},
+};
+
 // COLMAP's own thresholds give the best first model. The pictures that they leave over are few to a
 // place and share little: a round of their own, with less asked, still joins many of them.
 constexpr MapperDefault kLaterRounds[] = {
@@ -55,6 +70,12 @@ ColmapProgram FindColmap(const std::string& colmap) {
     if (!name.empty()) program.mapper_options.push_back(name);
   };
   const auto result = RunSubprocess(program.path, {"mapper", "-h"}, {}, read_line);
+  RunSubprocess(program.path, {"help"}, {}, [&](const std::string& line) {
+    program.has_global_mapper |= line.find(kGlobalMapper) != std::string::npos;
+  });
+  if (program.has_global_mapper) {
+    RunSubprocess(program.path, {kGlobalMapper, "-h"}, {}, read_line);
+  }
   std::sort(program.mapper_options.begin(), program.mapper_options.end());
   if (result.Succeeded() && program.HasMapperOption("database_path")) return program;
   throw Error(program.path.string(),
@@ -67,8 +88,8 @@ void AppendOptions(const MapperOptions& options, std::vector<std::string>* argum
   }
 }
 
-MapperOptions OptionsOfRound(const ColmapProgram& colmap, bool is_first_round, int random_seed,
-                             const MapperOptions& user_options) {
+MapperOptions OptionsOfRound(const ColmapProgram& colmap, Round round, const std::string& effort,
+                             int random_seed, const MapperOptions& user_options) {
   MapperOptions options;
   const auto add = [&](const std::string& name, const std::string& value) {
     if (colmap.HasMapperOption(name)) options[name] = value;
@@ -76,8 +97,13 @@ MapperOptions OptionsOfRound(const ColmapProgram& colmap, bool is_first_round, i
   add("random_seed", std::to_string(random_seed));
   add("Mapper.random_seed", std::to_string(random_seed));  // later versions; -1 = from the clock
   for (const MapperDefault& option : kEveryRound) add(option.name, option.value);
-  if (!is_first_round) {
+  if (round == Round::kLater) {
     for (const MapperDefault& option : kLaterRounds) add(option.name, option.value);
+  }
+  if (effort == "survey") {
+    for (const MapperDefault& option : kSurveyEffort) add(option.name, option.value);
+  } else if (effort == "field") {
+    for (const MapperDefault& option : kFieldEffort) add(option.name, option.value);
   }
   for (const auto& [name, value] : user_options) {
     if (!colmap.HasMapperOption(name)) {
@@ -86,6 +112,17 @@ MapperOptions OptionsOfRound(const ColmapProgram& colmap, bool is_first_round, i
     }
     options[name] = value;
   }
+  return options;
+}
+
+std::optional<MapperOptions> OptionsOfGlobalMapper(const ColmapProgram& colmap, int random_seed) {
+  if (!colmap.has_global_mapper) return std::nullopt;
+  MapperOptions options;
+  const auto add = [&](const std::string& name, const std::string& value) {
+    if (colmap.HasMapperOption(name)) options[name] = value;
+  };
+  add("GlobalMapper.num_threads", "1");
+  add("GlobalMapper.random_seed", std::to_string(random_seed));
   return options;
 }
 

@@ -27,6 +27,16 @@ template <typename Options>
 inline constexpr bool
     kTakesForeignOptions<Options, std::void_t<decltype(std::declval<Options>().Foreign())>> = true;
 
+// Whether an options struct has void Preset().
+template <typename Options, typename = void>
+inline constexpr bool kHasPreset = false;
+template <typename Options>
+inline constexpr bool kHasPreset<Options, std::void_t<decltype(std::declval<Options>().Preset())>> =
+    true;
+
+// The option that presets others.
+inline constexpr char kQualityOption[] = "quality";
+
 enum ExitCode : int { kDone = 0, kFailed = 1, kWrongUsage = 2, kIncomplete = 3 };
 
 struct Command {
@@ -35,6 +45,8 @@ struct Command {
   // Both work on the same options struct: bind() first, parse, then run().
   std::function<void(OptionTable*)> bind;
   std::function<ExitCode()> run;
+  // Once kQualityOption is set and before the others are: gives those that follow it their default.
+  std::function<void()> preset;
   ForeignOptions foreign;
 };
 
@@ -51,6 +63,7 @@ Command MakeCommand(const std::string& name, const std::string& summary,
   command.summary = summary;
   command.bind = [options](OptionTable* table) { options->Bind(table); };
   command.run = [options, run] { return run(*options); };
+  if constexpr (kHasPreset<Options>) command.preset = [options] { options->Preset(); };
   if constexpr (kTakesForeignOptions<Options>) command.foreign = options->Foreign();
   return command;
 }

@@ -176,14 +176,21 @@ bool ParseCommandLine(const Command& command, const std::vector<std::string>& ar
     texts.erase(project);
     texts.insert(from_file.begin(), from_file.end());
   }
-  for (const auto& [name, text] : texts) {
+  const auto set = [&](const std::string& name, const std::string& text) {
     if (table->Find(name) == nullptr) {
       (*command.foreign.values)[name] = text;
-      continue;
+      return;
     }
     const std::string problem = table->Set(name, text);
     if (!problem.empty()) throw UsageError(problem);
+  };
+  if (command.preset) {
+    if (const auto quality = texts.find(kQualityOption); quality != texts.end()) {
+      set(quality->first, quality->second);
+    }
+    command.preset();
   }
+  for (const auto& [name, text] : texts) set(name, text);
   const std::string problem = table->Check();
   if (!problem.empty()) throw UsageError(problem);
   return true;

@@ -25,6 +25,8 @@ constexpr size_t kMinPicturesOfModel = 3;
 constexpr size_t kMinPointsOfModel = 50;
 constexpr char kMinModelSize[] = "Mapper.min_model_size";
 constexpr char kRefineDistortion[] = "Mapper.ba_refine_extra_params";
+constexpr char kGlobalRefineDistortion[] = "GlobalMapper.ba_refine_extra_params";
+constexpr char kMapper[] = "mapper";
 
 void RemoveAll(const fs::path& path) {
   std::error_code error;
@@ -57,6 +59,7 @@ std::optional<int> NumRegistered(const std::string& line) {
 // One run of the mapper, in a folder of its own.
 struct Trial {
   fs::path folder;
+  std::string command;  // of COLMAP
   MapperOptions options;
   bool holds_distortion = false;
   std::vector<fs::path> models;     // those of enough points
@@ -108,13 +111,23 @@ class MapperRounds {
     const std::string name = std::to_string(round);
     const bool is_first = round == 1;
     const MapperOptions& options = is_first ? job_.first_round : job_.later_rounds;
-    Trial trial = RunTrial(name, options, job_.finds_lens, is_first);
-    const bool is_doubtful = trial.pictures.size() < missing_.size() || !trial.lenses_are_sound;
-    if (is_first && trial.holds_distortion && is_doubtful) {
-      const Trial free_trial = RunTrial(name + "_free_distortion", options, false, false);
-      if (IsBetter(free_trial, trial)) trial = free_trial;
+    Trial trial;
+    if (is_first && job_.global_round) {
+      trial = RunTrial(kGlobalMapper, name + "_global", *job_.global_round, true, false);
+    }
+    const auto try_too = [&](const std::string& suffix, bool holds_distortion, bool must_succeed) {
+      const Trial other = RunTrial(kMapper, name + suffix, options, holds_distortion, must_succeed);
+      if (trial.command.empty() || IsBetter(other, trial)) trial = other;
+    };
+    if (IsDoubtful(trial)) try_too("", job_.finds_lens, is_first && trial.models.empty());
+    if (is_first && trial.holds_distortion && IsDoubtful(trial)) {
+      try_too("_free_distortion", false, false);
     }
     return TakeModels("Mapper, round " + name, trial);
+  }
+
+  bool IsDoubtful(const Trial& trial) const {
+    return trial.pictures.size() < missing_.size() || !trial.lenses_are_sound;
   }
 
   // COLMAP drops models of less than ten pictures, as chance brings some about. Better than none.
@@ -122,16 +135,19 @@ class MapperRounds {
     if (!colmap_.HasMapperOption(kMinModelSize)) return;
     MapperOptions options = job_.later_rounds;
     options[kMinModelSize] = std::to_string(kMinPicturesOfModel);
-    TakeModels("Mapper, small models", RunTrial("small_models", options, job_.finds_lens, false));
+    TakeModels("Mapper, small models",
+               RunTrial(kMapper, "small_models", options, job_.finds_lens, false));
   }
 
-  Trial RunTrial(const std::string& name, const MapperOptions& options, bool holds_distortion,
-                 bool must_succeed) {
+  Trial RunTrial(const std::string& command, const std::string& name, const MapperOptions& options,
+                 bool holds_distortion, bool must_succeed) {
     Trial trial;
     trial.folder = folder_ / ("trial_" + name);
+    trial.command = command;
     trial.options = options;
-    trial.holds_distortion = holds_distortion && colmap_.HasMapperOption(kRefineDistortion);
-    if (trial.holds_distortion) trial.options[kRefineDistortion] = "0";
+    const char* refine = command == kMapper ? kRefineDistortion : kGlobalRefineDistortion;
+    trial.holds_distortion = holds_distortion && colmap_.HasMapperOption(refine);
+    if (trial.holds_distortion) trial.options[refine] = "0";
     fs::create_directories(trial.folder);
     Progress progress("Pictures registered by colmap mapper",
                       static_cast<int64_t>(missing_.size()));
@@ -153,9 +169,12 @@ class MapperRounds {
     std::string lens;
     if (job_.finds_lens) {
       const std::string log = "lens_" + trial_name + "_" + path.filename().string();
-      const AdjustmentJob job = {job_.database_path,      job_.image_path,
-                                 trial->options,          job_.log_folder / log,
-                                 trial->holds_distortion, job_.adjusts_principal_point};
+      const AdjustmentJob job = {job_.database_path,
+                                 job_.image_path,
+                                 trial->command == kMapper ? trial->options : job_.first_round,
+                                 job_.log_folder / log,
+                                 trial->holds_distortion,
+                                 job_.adjusts_principal_point};
       const LensAdjustment adjustment = AdjustLens(colmap_, job, path);
       lens = adjustment.outcome;
       trial->lenses_are_sound = trial->lenses_are_sound && adjustment.distortion_is_sound;
@@ -168,13 +187,10 @@ class MapperRounds {
   }
 
   std::vector<std::string> Arguments(const Trial& trial) const {
-    std::vector<std::string> arguments = {"mapper",
-                                          "--database_path",
-                                          job_.database_path.string(),
-                                          "--image_path",
-                                          job_.image_path.string(),
-                                          "--output_path",
-                                          trial.folder.string()};
+    std::vector<std::string> arguments = {
+        trial.command,        "--database_path",        job_.database_path.string(),
+        "--image_path",       job_.image_path.string(), "--output_path",
+        trial.folder.string()};
     if (num_models_ > 0) {
       const fs::path list = trial.folder / "pictures.txt";
       std::string names;

@@ -4,6 +4,8 @@
 //   partial   ... without the last picture       two_models  ... as two models of half the pictures
 //   two_rounds ... the first half in the first round, the others when they are asked for alone
 //   no_model  ends like COLMAP 3.8 without any   crash       a half-written model, then SIGABRT
+//   global    has a global_mapper too, which finds all; the mapper fails
+//   global_partial  has one that leaves a picture out; the mapper finds all
 // FAKE_COLMAP_SECONDS: how long the mapper takes. FAKE_COLMAP_PID: file that gets its process id.
 #include <signal.h>
 #include <unistd.h>
@@ -111,7 +113,7 @@ std::set<std::string> ReadList(const std::string& path) {
   return names;
 }
 
-int RunMapper(std::map<std::string, std::string> options) {
+int RunMapper(bool is_global, std::map<std::string, std::string> options) {
   const std::string mode = Variable("FAKE_COLMAP_MODE", "model");
   const std::string pid_file = Variable("FAKE_COLMAP_PID", "");
   if (!pid_file.empty()) std::ofstream(pid_file) << getpid() << std::endl;
@@ -142,7 +144,7 @@ int RunMapper(std::map<std::string, std::string> options) {
     std::ofstream(output + "/half_a_model") << "x";
     raise(SIGABRT);
   }
-  if (mode == "partial") images.pop_back();
+  if (mode == "partial" || (is_global && mode == "global_partial")) images.pop_back();
   if (mode == "two_rounds" && listed.empty()) images.resize(images.size() / 2);
   if (mode == "two_models") {
     const auto middle = images.begin() + static_cast<std::ptrdiff_t>(images.size() / 2);
@@ -157,12 +159,22 @@ int RunMapper(std::map<std::string, std::string> options) {
 
 int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
-  if (arguments.size() < 2 || arguments[0] != "mapper") return EXIT_FAILURE;
-  if (arguments[1] == "-h") {
-    PrintHelp();
+  const std::string mode = Variable("FAKE_COLMAP_MODE", "model");
+  const bool has_global_mapper = mode.rfind("global", 0) == 0;
+  if (arguments.size() == 1 && arguments[0] == "help") {
+    std::cout << "Available commands:\n  mapper\n"
+              << (has_global_mapper ? "  global_mapper\n" : "");
     return EXIT_SUCCESS;
   }
+  const bool is_global = has_global_mapper && !arguments.empty() && arguments[0] == "global_mapper";
+  if (arguments.size() < 2 || (arguments[0] != "mapper" && !is_global)) return EXIT_FAILURE;
+  if (arguments[1] == "-h") {
+    PrintHelp();
+    if (is_global) std::cout << "  --GlobalMapper.num_threads arg (=-1)\n";
+    return EXIT_SUCCESS;
+  }
+  if (mode == "global" && !is_global) return EXIT_FAILURE;
   std::map<std::string, std::string> options;
   for (size_t i = 1; i + 1 < arguments.size(); i += 2) options[arguments[i]] = arguments[i + 1];
-  return RunMapper(options);
+  return RunMapper(is_global, options);
 }

@@ -92,6 +92,33 @@ TEST_F(Reconstructor, MapperOptionsAreHandedOnOrRefused) {
   EXPECT_EQ(Report()["options"]["Mapper.min_model_size"], "3");
 }
 
+TEST_F(Reconstructor, FieldQualityTakesTheGlobalMapperThatFindsAll) {
+  ASSERT_EQ(Reconstruct("global", {"--quality", "field"}).exit_code, 0);
+  EXPECT_EQ(Report()["images_used"], 6);
+  EXPECT_TRUE(fs::exists(Workspace() / "report/mapper_1_global.log"));
+  EXPECT_FALSE(fs::exists(Workspace() / "report/mapper_1.log"));
+}
+
+TEST_F(Reconstructor, WhatTheGlobalMapperLeavesOutTheOtherMayFind) {
+  ASSERT_EQ(Reconstruct("global_partial", {"--quality", "field"}).exit_code, 0);
+  EXPECT_EQ(Report()["images_used"], 6);
+  EXPECT_TRUE(fs::exists(Workspace() / "report/mapper_1_global.log"));
+  EXPECT_TRUE(fs::exists(Workspace() / "report/mapper_1.log"));
+}
+
+TEST_F(Reconstructor, QualityPresetsWhatIsNotGiven) {
+  EXPECT_EQ(Reconstruct("model", {"--quality", "best"}).exit_code, 2);
+  ASSERT_EQ(Reconstruct("model", {"--SeaPointExtraction.max_num_features", "700", "--quality",
+                                  "archive", "--SeaPointExtraction.min_num_features", "600"})
+                .exit_code,
+            0);
+  const auto options = Report()["options"];
+  EXPECT_EQ(options["quality"], "archive");
+  EXPECT_EQ(options["SeaPointExtraction.descriptor"], "sift");
+  EXPECT_EQ(options["SeaPointExtraction.min_num_features"], "600");
+  EXPECT_EQ(options["SeaPointExtraction.max_num_features"], "700");
+}
+
 TEST_F(Reconstructor, AMapperThatFindsNoModel) {
   CliResult result = Reconstruct("no_model");
   EXPECT_EQ(result.exit_code, 1) << result.Text();
