@@ -120,10 +120,11 @@ void RefuseForeignKeypoints(const std::string& database_path,
   for (const DatabaseImage& image : database.ReadImages()) ids[image.name] = image.image_id;
   for (const ReadablePicture& picture : pictures) {
     const auto id = ids.find(picture.name);
-    if (id == ids.end() || !database.HasKeypoints(id->second)) continue;
+    if (id == ids.end() || !database.HasFeatures(id->second)) continue;
     if (database.FeaturesFingerprint(id->second) && database.ReadFeatures(id->second)) continue;
     throw Error(database_path, "holds keypoints of other software for " + picture.name,
-                "choose a new --database_path: they are never overwritten");
+                "choose a new --database_path: they are never overwritten, and one database holds "
+                "one kind of keypoints (partial_densifier needs none of ours in it)");
   }
 }
 

@@ -13,6 +13,7 @@
 #include "colmap_seapoint/commands/pairs_csv.h"
 #include "colmap_seapoint/commands/picture_scale.h"
 #include "colmap_seapoint/commands/read_rig.h"
+#include "colmap_seapoint/commands/run_mapper.h"
 #include "colmap_seapoint/io/atomic_file.h"
 #include "colmap_seapoint/io/colmap_model.h"
 #include "colmap_seapoint/io/ply.h"
@@ -139,11 +140,36 @@ void FillReport(const SparseModel& model, const SequenceReport& sequence, RunRep
   report->images_used = static_cast<int64_t>(used.size());
 }
 
+// The models that one run of the mapper left: each has its own frame and gets its own folder.
+ExitCode DensifySideBySide(const PartialDensifierOptions& options,
+                           const std::vector<std::filesystem::path>& models) {
+  ExitCode worst = kDone;
+  int64_t num_points = 0;
+  for (const std::filesystem::path& model : models) {
+    PartialDensifierOptions one = options;
+    one.input_path = model.string();
+    one.output_path = (std::filesystem::path(options.output_path) / model.filename()).string();
+    LogInfo("Model " + one.input_path);
+    const RunReport report = DensifyModel(one);
+    num_points += report.points;
+    if (report.points == 0) {
+      LogWarning(one.input_path + " is left out: no pair of its pictures gave a point; see " +
+                 one.output_path + "/pairs.csv");
+    }
+    if (report.points == 0 || ExitCodeOf(report) != kDone) worst = kIncomplete;
+  }
+  if (num_points > 0) return worst;
+  throw Error(options.input_path, "no pair of any of its models gave a point",
+              "see why in the pairs.csv below " + options.output_path);
+}
+
 }  // namespace
 
 void PartialDensifierOptions::Bind(OptionTable* table) {
   table->AddRequired("image_path", &image_path, "folder of the pictures");
-  table->AddRequired("input_path", &input_path, "COLMAP model, binary or text");
+  table->AddRequired("input_path", &input_path,
+                     "COLMAP model, binary or text; or a folder of several, each densified into "
+                     "a folder of its name");
   table->AddRequired("output_path", &output_path,
                      "folder for fused.ply, fused.ply.vis, pairs.csv and run.json");
   table->Add("database_path", &database_path,
@@ -192,6 +218,10 @@ RunReport DensifyModel(const PartialDensifierOptions& options) {
 }
 
 ExitCode RunPartialDensifier(const PartialDensifierOptions& options) {
+  if (!IsSparseModel(options.input_path)) {
+    const auto models = ListModels(options.input_path);
+    if (!models.empty()) return DensifySideBySide(options, models);
+  }
   const RunReport report = DensifyModel(options);
   if (report.points > 0) return ExitCodeOf(report);
   throw Error(options.input_path, "no pair of its pictures gave a point",

@@ -32,6 +32,8 @@ struct PartialDensifierOptions {
 // is written, and pairs.csv says why.
 RunReport DensifyModel(const PartialDensifierOptions& options);
 
+// As DensifyModel; or, when input_path is no model but holds several (what COLMAP's mapper leaves
+// in sparse/), each of them into the folder of its name below output_path.
 ExitCode RunPartialDensifier(const PartialDensifierOptions& options);
 
 }  // namespace colmap_seapoint

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <set>
 #include <system_error>
 #include <utility>
 
@@ -14,66 +13,6 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr int kCameraSensorType = 0;  // COLMAP's SensorType::CAMERA
-
-// COLMAP 3.8's schema, with the one column of 4.x that older versions do not mind. COLMAP reads
-// some tables by position: columns may be appended only.
-constexpr const char* kSchema = R"(
-BEGIN IMMEDIATE;
-CREATE TABLE IF NOT EXISTS cameras(camera_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, model INTEGER NOT NULL,
-  width INTEGER NOT NULL, height INTEGER NOT NULL, params BLOB,
-  prior_focal_length INTEGER NOT NULL);
-CREATE TABLE IF NOT EXISTS images(image_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL,
-  name TEXT NOT NULL UNIQUE, camera_id INTEGER NOT NULL, prior_qw REAL, prior_qx REAL,
-  prior_qy REAL, prior_qz REAL, prior_tx REAL, prior_ty REAL, prior_tz REAL,
-  CONSTRAINT image_id_check CHECK(image_id >= 0 and image_id < 2147483647),
-  FOREIGN KEY(camera_id) REFERENCES cameras(camera_id));
-CREATE UNIQUE INDEX IF NOT EXISTS index_name ON images(name);
-CREATE TABLE IF NOT EXISTS keypoints(image_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER NOT NULL,
-  cols INTEGER NOT NULL, data BLOB,
-  FOREIGN KEY(image_id) REFERENCES images(image_id) ON DELETE CASCADE);
-CREATE TABLE IF NOT EXISTS descriptors(image_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER NOT NULL,
-  cols INTEGER NOT NULL, data BLOB, type INTEGER NOT NULL DEFAULT 0,
-  FOREIGN KEY(image_id) REFERENCES images(image_id) ON DELETE CASCADE);
-CREATE TABLE IF NOT EXISTS matches(pair_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER NOT NULL,
-  cols INTEGER NOT NULL, data BLOB);
-CREATE TABLE IF NOT EXISTS two_view_geometries(pair_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER NOT NULL,
-  cols INTEGER NOT NULL, data BLOB, config INTEGER NOT NULL, F BLOB, E BLOB, H BLOB, qvec BLOB,
-  tvec BLOB);
-PRAGMA user_version = 3800;
-COMMIT;
-)";
-
-// What we read and write, in every version from 3.8 on.
-constexpr std::pair<const char*, const char*> kNeededColumns[] = {
-    {"cameras", "camera_id"},
-    {"cameras", "model"},
-    {"cameras", "width"},
-    {"cameras", "height"},
-    {"cameras", "params"},
-    {"cameras", "prior_focal_length"},
-    {"images", "image_id"},
-    {"images", "name"},
-    {"images", "camera_id"},
-    {"keypoints", "image_id"},
-    {"keypoints", "rows"},
-    {"keypoints", "cols"},
-    {"keypoints", "data"},
-    {"descriptors", "image_id"},
-    {"descriptors", "rows"},
-    {"descriptors", "cols"},
-    {"descriptors", "data"},
-    {"matches", "pair_id"},
-    {"matches", "rows"},
-    {"matches", "cols"},
-    {"matches", "data"},
-    {"two_view_geometries", "pair_id"},
-    {"two_view_geometries", "rows"},
-    {"two_view_geometries", "cols"},
-    {"two_view_geometries", "data"},
-    {"two_view_geometries", "config"},
-    {"two_view_geometries", "F"},
-    {"two_view_geometries", "E"},
-    {"two_view_geometries", "H"}};
 
 void CheckPath(const std::string& path, ColmapDatabase::Mode mode) {
   std::error_code error;
@@ -118,9 +57,11 @@ ColmapDatabase::ColmapDatabase(const std::filesystem::path& path, Mode mode, int
   try {
     Open(mode, busy_timeout_ms);
     CheckIntegrity();
-    if (mode == Mode::kCreateIfMissing && !HasRows("sqlite_master")) RunSql(path_, db_, kSchema);
-    ReadSchema();
+    if (mode == Mode::kCreateIfMissing && !HasRows("sqlite_master"))
+      RunSql(path_, db_, kColmapSchema);
+    extras_ = CheckSchema(path_, db_, mode != Mode::kReadOnly);
     if (mode != Mode::kReadOnly) {
+      ChooseJournal();  // the first byte that changes: foreign databases are refused by now
       // Permissions, locks and a full disk show now, not after hours of work.
       RunSql(path_, db_, "BEGIN IMMEDIATE");
       RunSql(path_, db_, "ROLLBACK");
@@ -136,9 +77,7 @@ ColmapDatabase::~ColmapDatabase() { sqlite3_close_v2(db_); }
 ColmapDatabase::ColmapDatabase(ColmapDatabase&& other) noexcept
     : path_(std::move(other.path_)),
       db_(std::exchange(other.db_, nullptr)),
-      has_descriptor_type_(other.has_descriptor_type_),
-      has_frames_(other.has_frames_),
-      has_poses_(other.has_poses_) {}
+      extras_(other.extras_) {}
 
 void ColmapDatabase::Open(Mode mode, int busy_timeout_ms) {
   const int flags = mode == Mode::kReadOnly    ? SQLITE_OPEN_READONLY
@@ -160,7 +99,9 @@ void ColmapDatabase::Open(Mode mode, int busy_timeout_ms) {
   }
   if (code != SQLITE_OK) ThrowSqliteError(path_, db_, code, "opening it");
   RunSql(path_, db_, "PRAGMA foreign_keys = ON");
-  if (mode == Mode::kReadOnly) return;
+}
+
+void ColmapDatabase::ChooseJournal() {
   // WAL with NORMAL is consistent after kill -9 and after a power cut, and keeps every commit after
   // kill -9. Where the file system cannot do WAL, the journal needs FULL for the same.
   SqlStatement journal(path_, db_, "PRAGMA journal_mode = WAL");
@@ -177,20 +118,6 @@ void ColmapDatabase::CheckIntegrity() const {
   }
   throw Error(path_, "the database is damaged (" + finding + ")",
               "restore a copy, or delete it and run again");
-}
-
-void ColmapDatabase::ReadSchema() {
-  for (const auto& [table, column] : kNeededColumns) {
-    if (!HasColumn(table, column)) {
-      throw Error(path_,
-                  std::string("is no COLMAP database: it has no column ") + table + "." + column,
-                  "give a database of COLMAP 3.8 or later, or another name for a new one");
-    }
-  }
-  has_descriptor_type_ = HasColumn("descriptors", "type");
-  has_poses_ = HasColumn("two_view_geometries", "qvec") && HasColumn("two_view_geometries", "tvec");
-  has_frames_ = HasColumn("rigs", "ref_sensor_type") && HasColumn("rig_sensors", "sensor_type") &&
-                HasColumn("frames", "rig_id") && HasColumn("frame_data", "sensor_type");
 }
 
 bool ColmapDatabase::HasColumn(const std::string& table, const std::string& column) const {
@@ -291,7 +218,7 @@ uint32_t ColmapDatabase::AddImage(const std::string& name, uint32_t camera_id) {
   SqlSavepoint savepoint(path_, db_);
   // Frames are all or nothing: an image without one makes newer COLMAPs abort.
   const bool needs_frame =
-      has_frames_ && (HasRows("frames") || (HasRows("rigs") && !HasRows("images")));
+      extras_.has_frames && (HasRows("frames") || (HasRows("rigs") && !HasRows("images")));
   SqlStatement(path_, db_, "INSERT INTO images(name, camera_id) VALUES(?, ?)")
       .Bind(name)
       .Bind(static_cast<int64_t>(camera_id))

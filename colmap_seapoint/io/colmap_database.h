@@ -19,6 +19,7 @@
 
 #include "colmap_seapoint/base/camera.h"
 #include "colmap_seapoint/base/features.h"
+#include "colmap_seapoint/io/colmap_schema.h"
 
 struct sqlite3;
 
@@ -48,8 +49,8 @@ class ColmapDatabase {
   enum class Mode { kReadOnly, kReadWrite, kCreateIfMissing };
 
   // Throws Error: missing file, not a database, damaged (PRAGMA quick_check), locked by another
-  // program (waits up to `busy_timeout_ms`), lacking COLMAP's tables or columns, no permission,
-  // full disk.
+  // program (waits up to `busy_timeout_ms`), of a shape that we do not know (CheckSchema; nothing
+  // is written then), no permission, full disk.
   ColmapDatabase(const std::filesystem::path& path, Mode mode, int busy_timeout_ms = 10000);
   ~ColmapDatabase();
   ColmapDatabase(ColmapDatabase&&) noexcept;
@@ -66,7 +67,8 @@ class ColmapDatabase {
   // that is there already, and a camera that is not.
   uint32_t AddImage(const std::string& name, uint32_t camera_id);
 
-  // Of the images that have one, by image_id; finite. A row of pose_priors wins over images.prior_*.
+  // Of the images that have one, by image_id; finite. A row of pose_priors wins over
+  // images.prior_*.
   std::vector<PositionPrior> ReadPositionPriors() const;
 
   // Everything written between Begin and Commit lands together or not at all; without them, each
@@ -75,17 +77,21 @@ class ColmapDatabase {
   void CommitTransaction();
   void RollbackTransaction();
 
-  bool HasKeypoints(uint32_t image_id) const;
-  // The `fingerprint` that WriteFeatures stored; nullopt when the picture has no SeaPoints of ours.
+  // Keypoints or descriptors, whoever wrote them.
+  bool HasFeatures(uint32_t image_id) const;
+  // The `fingerprint` that WriteFeatures stored; nullopt when the picture has no SeaPoints of ours,
+  // or its keypoints are not there any more (colmap database_cleaner) or were replaced.
   std::optional<std::string> FeaturesFingerprint(uint32_t image_id) const;
   // Keypoints (x, y, scale, orientation), SIFT or stub descriptor row, our row. Replaces them,
-  // and drops this image's matches and two-view geometries, when they were there (ours changed).
+  // and drops this image's matches and two-view geometries, when any were there (ours changed).
   void WriteFeatures(uint32_t image_id, const Features& features, const std::string& fingerprint);
   // nullopt when the image has no SeaPoints of ours, or its keypoints are not the ones that belong
   // to our descriptors (other software replaced them). Damaged descriptors are an Error.
   std::optional<Features> ReadFeatures(uint32_t image_id) const;
 
-  bool HasMatches(ImagePair pair) const;  // a row in `two_view_geometries`
+  // A row in `two_view_geometries`, but for the empty one of an undefined geometry: COLMAP's own
+  // matchers write it for pictures that have stubs. Ours never do.
+  bool HasMatches(ImagePair pair) const;
   // Both tables, in pair_id order: when id1 > id2 the match columns, F, E, H and the pose are
   // swapped. Unset matrices are NULL. Replaces earlier rows of the pair.
   void WriteMatches(uint32_t image_id1, uint32_t image_id2, const FeatureMatches& raw,
@@ -110,7 +116,7 @@ class ColmapDatabase {
  private:
   void Open(Mode mode, int busy_timeout_ms);
   void CheckIntegrity() const;
-  void ReadSchema();
+  void ChooseJournal();
   bool HasColumn(const std::string& table, const std::string& column) const;
   bool HasRow(const std::string& sql, int64_t id) const;
   bool HasRows(const std::string& table) const;
@@ -121,9 +127,7 @@ class ColmapDatabase {
 
   std::string path_;
   sqlite3* db_ = nullptr;
-  bool has_descriptor_type_ = false;  // descriptors.type, 4.0 and later
-  bool has_frames_ = false;           // rigs and frames, 3.12 and later
-  bool has_poses_ = false;            // two_view_geometries.qvec and tvec
+  SchemaExtras extras_;
 };
 
 }  // namespace colmap_seapoint

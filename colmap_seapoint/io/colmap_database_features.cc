@@ -21,20 +21,27 @@ constexpr const char* kOwnTable =
     "FOREIGN KEY(image_id) REFERENCES images(image_id) ON DELETE CASCADE)";
 
 [[noreturn]] void ThrowDamaged(const std::string& path, uint32_t image_id, const char* which) {
-  throw Error(path, std::string("the ") + which + " descriptors of image " +
-                        std::to_string(image_id) + " are damaged",
+  throw Error(path,
+              std::string("the ") + which + " descriptors of image " + std::to_string(image_id) +
+                  " are damaged",
               "restore a copy of the database, or delete it and extract features again");
 }
 
 }  // namespace
 
-bool ColmapDatabase::HasKeypoints(uint32_t image_id) const {
-  return HasRow("SELECT 1 FROM keypoints WHERE image_id = ?", image_id);
+bool ColmapDatabase::HasFeatures(uint32_t image_id) const {
+  return HasRow(
+      "SELECT 1 FROM keypoints WHERE image_id = ?1 UNION ALL "
+      "SELECT 1 FROM descriptors WHERE image_id = ?1",
+      image_id);
 }
 
 std::optional<std::string> ColmapDatabase::FeaturesFingerprint(uint32_t image_id) const {
   if (!HasColumn("seapoint_descriptors", "data_hash")) return std::nullopt;
-  SqlStatement row(path_, db_, "SELECT fingerprint FROM seapoint_descriptors WHERE image_id = ?");
+  SqlStatement row(path_, db_,
+                   "SELECT fingerprint FROM seapoint_descriptors AS ours JOIN keypoints "
+                   "USING(image_id) WHERE image_id = ? AND keypoints.rows = ours.rows AND "
+                   "keypoints.cols = 4");
   row.Bind(static_cast<int64_t>(image_id));
   if (!row.Step()) return std::nullopt;
   return row.Text(0);
@@ -70,7 +77,10 @@ void ColmapDatabase::WriteFeatures(uint32_t image_id, const Features& features,
   if (!HasColumn("seapoint_descriptors", "sift_hash")) {  // made before there was SIFT
     RunSql(path_, db_, "ALTER TABLE seapoint_descriptors ADD COLUMN sift_hash TEXT");
   }
-  if (HasKeypoints(image_id)) DeleteMatchesOf(image_id);
+  if (HasFeatures(image_id) ||
+      HasRow("SELECT 1 FROM seapoint_descriptors WHERE image_id = ?", image_id)) {
+    DeleteMatchesOf(image_id);
+  }
   SqlStatement(path_, db_,
                "INSERT OR REPLACE INTO keypoints(image_id, rows, cols, data) VALUES(?, ?, ?, ?)")
       .Bind(static_cast<int64_t>(image_id))
@@ -81,7 +91,7 @@ void ColmapDatabase::WriteFeatures(uint32_t image_id, const Features& features,
   SqlStatement(
       path_, db_,
       std::string("INSERT OR REPLACE INTO descriptors(image_id, rows, cols, data") +
-          (has_descriptor_type_ ? ", type) VALUES(?, ?, ?, ?, 0)" : ") VALUES(?, ?, ?, ?)"))
+          (extras_.has_descriptor_type ? ", type) VALUES(?, ?, ?, ?, 0)" : ") VALUES(?, ?, ?, ?)"))
       .Bind(static_cast<int64_t>(image_id))
       .Bind(static_cast<int64_t>(features.sift_descriptors.size()))
       .Bind(kSiftCols)

@@ -83,7 +83,9 @@ std::string PairText(ImagePair pair) {
 }  // namespace
 
 bool ColmapDatabase::HasMatches(ImagePair pair) const {
-  return HasRow("SELECT 1 FROM two_view_geometries WHERE pair_id = ?", PairId(pair));
+  return HasRow(
+      "SELECT 1 FROM two_view_geometries WHERE pair_id = ? AND (rows <> 0 OR config <> 0)",
+      PairId(pair));
 }
 
 void ColmapDatabase::WriteMatches(uint32_t image_id1, uint32_t image_id2, const FeatureMatches& raw,
@@ -103,8 +105,8 @@ void ColmapDatabase::WriteMatches(uint32_t image_id1, uint32_t image_id2, const 
   SqlStatement row(path_, db_,
                    std::string("INSERT OR REPLACE INTO two_view_geometries(pair_id, rows, cols, "
                                "data, config, F, E, H") +
-                       (has_poses_ ? ", qvec, tvec) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"
-                                   : ") VALUES(?, ?, ?, ?, ?, ?, ?, ?)"));
+                       (extras_.has_poses ? ", qvec, tvec) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"
+                                          : ") VALUES(?, ?, ?, ?, ?, ?, ?, ?)"));
   row.Bind(pair_id);
   BindMatches(geometry.inliers, &row);
   row.Bind(static_cast<int64_t>(geometry.config));
@@ -120,12 +122,12 @@ void ColmapDatabase::WriteMatches(uint32_t image_id1, uint32_t image_id2, const 
   }
   Eigen::Vector4d qvec;
   Eigen::Vector3d tvec;
-  if (has_poses_ && geometry.cam2_from_cam1) {
+  if (extras_.has_poses && geometry.cam2_from_cam1) {
     const Eigen::Quaterniond& q = geometry.cam2_from_cam1->rotation;
     qvec << q.w(), q.x(), q.y(), q.z();
     tvec = geometry.cam2_from_cam1->translation;
     row.BindBlob(qvec.data(), sizeof(double) * 4).BindBlob(tvec.data(), sizeof(double) * 3);
-  } else if (has_poses_) {
+  } else if (extras_.has_poses) {
     row.BindNull().BindNull();
   }
   row.Run();
@@ -166,7 +168,7 @@ TwoViewGeometry ColmapDatabase::ReadTwoViewGeometry(ImagePair pair) const {
   TwoViewGeometry geometry;
   SqlStatement row(path_, db_,
                    std::string("SELECT rows, cols, data, config, F, E, H") +
-                       (has_poses_ ? ", qvec, tvec" : "") +
+                       (extras_.has_poses ? ", qvec, tvec" : "") +
                        " FROM two_view_geometries WHERE pair_id = ?");
   row.Bind(PairId(pair));
   if (!row.Step()) return geometry;
@@ -182,7 +184,7 @@ TwoViewGeometry ColmapDatabase::ReadTwoViewGeometry(ImagePair pair) const {
     const auto matrix = TakeMatrix<RowMajorMatrix3d>(path_, who, row, 4 + i);
     if (matrix) *matrices[i] = *matrix;
   }
-  if (has_poses_) {
+  if (extras_.has_poses) {
     const auto qvec = TakeMatrix<Eigen::Vector4d>(path_, who, row, 7);
     const auto tvec = TakeMatrix<Eigen::Vector3d>(path_, who, row, 8);
     if (qvec) {

@@ -7,6 +7,7 @@
 
 #include "colmap_seapoint/io/colmap_database.h"
 #include "tests/cli/cli_runner.h"
+#include "tests/cli/database_tables.h"
 #include "tests/cli/synthetic_strip.h"
 
 namespace colmap_seapoint {
@@ -67,6 +68,68 @@ TEST_F(BadDatabase, AnotherProgramsDatabase) {
   const CliResult result = Extract();
   EXPECT_EQ(result.exit_code, 1) << result.Text();
   EXPECT_NE(result.LastErrorLine().find("no COLMAP database"), std::string::npos) << result.Text();
+  EXPECT_TRUE(ReadBytes(Database()) == bytes);
+}
+
+// Of a shape that no COLMAP we know has: refused with one line, and not a byte is written.
+TEST_F(BadDatabase, UnknownShapes) {
+  const struct {
+    const char* sql;
+    const char* word;
+  } kShapes[] = {
+      {"ALTER TABLE keypoints RENAME COLUMN cols TO width", "no column keypoints.cols"},
+      {"DROP TABLE two_view_geometries", "no column two_view_geometries.pair_id"},
+      {"DROP TABLE descriptors; CREATE TABLE descriptors(image_id INTEGER PRIMARY KEY NOT NULL, "
+       "rows INTEGER NOT NULL, cols INTEGER NOT NULL, data BLOB, space INTEGER NOT NULL)",
+       "descriptors.space must have a value"},
+      {"DROP TABLE matches; CREATE TABLE matches(pair_id INTEGER NOT NULL, rows INTEGER NOT NULL, "
+       "cols INTEGER NOT NULL, data BLOB, model TEXT NOT NULL, PRIMARY KEY(pair_id, model))",
+       "matches.pair_id is no INTEGER PRIMARY KEY"},
+      {"DROP TABLE matches; CREATE VIEW matches AS SELECT 1 AS pair_id, 0 AS rows, 2 AS cols, "
+       "NULL AS data",
+       "matches is no table but a view"},
+      {"CREATE TABLE frames(frame_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, rig_id INTEGER "
+       "NOT NULL)",
+       "no column rigs.rig_id"},
+      {"DROP TABLE seapoint_descriptors; CREATE TABLE seapoint_descriptors(image_id INTEGER "
+       "PRIMARY KEY, colour TEXT)",
+       "no column seapoint_descriptors.rows"}};
+  ASSERT_EQ(Extract().exit_code, 0);
+  ExecuteSql(Database(), "PRAGMA journal_mode = DELETE");  // every byte in the one file
+  const std::string sound = ReadBytes(Database());
+  for (const auto& shape : kShapes) {
+    WriteBytes(Database(), sound);
+    ExecuteSql(Database(), shape.sql);
+    const std::string bytes = ReadBytes(Database());
+    ExpectRefusal(Extract(), bytes, shape.word);
+    ExpectRefusal(Match(), bytes, shape.word);
+  }
+  // More than we know is welcome where it may stay empty.
+  WriteBytes(Database(), sound);
+  ExecuteSql(Database(),
+             "ALTER TABLE images ADD COLUMN depth REAL; ALTER TABLE two_view_geometries ADD COLUMN "
+             "score REAL NOT NULL DEFAULT 0; CREATE TABLE dives(name TEXT NOT NULL)");
+  EXPECT_EQ(Extract().exit_code, 0);
+  EXPECT_EQ(Match().exit_code, 0);
+}
+
+// What colmap database_cleaner and COLMAP's own matchers leave behind.
+TEST_F(BadDatabase, CleanedFeaturesAreFoundAgainAndEmptyRowsMatchedAgain) {
+  ASSERT_EQ(Extract().exit_code, 0);
+  const auto extracted = ReadTables(Database());
+  ExecuteSql(Database(), "DELETE FROM keypoints; DELETE FROM descriptors");
+  const CliResult refused = Match();
+  EXPECT_EQ(refused.exit_code, 1) << refused.Text();
+  EXPECT_NE(refused.LastErrorLine().find("none of its 2 images has SeaPoints"), std::string::npos);
+  EXPECT_EQ(Extract().exit_code, 0);
+  EXPECT_EQ(ReadTables(Database()), extracted);
+  ExecuteSql(Database(),
+             "INSERT INTO matches(pair_id, rows, cols) VALUES(2147483649, 0, 0); "
+             "INSERT INTO two_view_geometries(pair_id, rows, cols, config) "
+             "VALUES(2147483649, 0, 0, 0)");
+  EXPECT_EQ(Match().exit_code, 0);
+  EXPECT_EQ(QueryRows(Database(), "SELECT count(*) FROM two_view_geometries WHERE rows > 100"),
+            TableRows{"1"});
 }
 
 TEST_F(BadDatabase, Damaged) {

@@ -166,7 +166,7 @@ TEST_F(Extractor, LeavesOutWhatIsBrokenAndGoesOn) {
     const ColmapDatabase database = Open();
     for (const DatabaseImage& image : database.ReadImages()) {
       // An empty row: otherwise COLMAP's own extractor would add SIFT to it.
-      EXPECT_TRUE(database.HasKeypoints(image.image_id)) << image.name;
+      EXPECT_TRUE(database.HasFeatures(image.image_id)) << image.name;
     }
   }
   // Once more: the same answer.

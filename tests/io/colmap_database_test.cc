@@ -55,8 +55,8 @@ TEST_F(DatabaseTest, CamerasAndImagesRoundTrip) {
 TEST_F(DatabaseTest, FeaturesRoundTripBesideAStub) {
   ExpectSameFeatures(db_.ReadFeatures(a_), MakeFeatures(20, 1));
   EXPECT_EQ(db_.FeaturesFingerprint(b_), "print b");
-  EXPECT_TRUE(db_.HasKeypoints(a_));
-  EXPECT_FALSE(db_.HasKeypoints(99));
+  EXPECT_TRUE(db_.HasFeatures(a_));
+  EXPECT_FALSE(db_.HasFeatures(99));
   EXPECT_FALSE(db_.FeaturesFingerprint(99));
   EXPECT_FALSE(db_.ReadFeatures(99));
   EXPECT_EQ(Query(path_, "SELECT image_id, rows, cols, data, typeof(data), type FROM descriptors"),
