@@ -16,6 +16,7 @@
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/commands/command.h"
 #include "colmap_seapoint/commands/command_line.h"
+#include "colmap_seapoint/commands/manual.h"
 
 namespace {
 
@@ -33,6 +34,28 @@ void PrintHelp(const std::vector<Command>& commands, std::ostream& out) {
   }
   out << "\n'colmap_seapoint <command> -h' lists the options of a command.\n"
       << "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 done but some input was left out.\n";
+}
+
+// `help [--format text|man|bash]`. The last two are for the package: see manual.h.
+int RunHelp(const std::vector<Command>& commands, const std::vector<std::string>& arguments) {
+  if (arguments.empty()) {
+    PrintHelp(commands, std::cout);
+    return kDone;
+  }
+  const std::string format =
+      arguments.size() == 2 && arguments[0] == "--format" ? arguments[1] : "";
+  if (format == "text") {
+    PrintHelp(commands, std::cout);
+  } else if (format == "man") {
+    PrintManPage(commands, std::cout);
+  } else if (format == "bash") {
+    PrintBashCompletion(commands, std::cout);
+  } else {
+    throw UsageError(
+        "help takes --format text, man or bash; 'colmap_seapoint <command> -h' lists "
+        "the options of a command");
+  }
+  return kDone;
 }
 
 int RunCommand(const Command& command, const std::vector<std::string>& arguments) {
@@ -54,8 +77,7 @@ int Run(const std::vector<std::string>& arguments) {
   }
   const std::string& name = arguments.front();
   if (name == "help" || name == "-h" || name == "--help") {
-    PrintHelp(commands, std::cout);
-    return kDone;
+    return RunHelp(commands, {arguments.begin() + 1, arguments.end()});
   }
   if (name == "version" || name == "--version") {
     std::cout << "colmap_seapoint " << SEAPOINT_VERSION << "\n";

@@ -48,12 +48,12 @@ SequenceReport DensifySequence(const SparseModel& model, PictureSource* source,
     } else {
       ++first;
     }
-    callbacks.progress(first, total);
+    if (callbacks.progress) callbacks.progress(first, total);
   }
   if (options.completion) {
     for (int position = 0; position < num_pictures; ++position) {
       state.Complete(position);
-      callbacks.progress(num_pictures + position + 1, total);
+      if (callbacks.progress) callbacks.progress(num_pictures + position + 1, total);
     }
   }
   return state.TakeReport();

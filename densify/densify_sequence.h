@@ -64,7 +64,7 @@ struct PairDebug;
 // What comes out on the way, in processing order, from the caller's thread.
 struct SequenceCallbacks {
   std::function<void(const PartialCloud&)> sink;              // each partial local cloud
-  std::function<void(int64_t done, int64_t total)> progress;  // now and then
+  std::function<void(int64_t done, int64_t total)> progress;  // now and then; optional
   // Optional: every pair that was densified. Then each is densified in full too, for comparison.
   std::function<void(const PairDebug&)> debug;
 };

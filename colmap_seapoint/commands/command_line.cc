@@ -16,7 +16,6 @@ namespace {
 namespace po = boost::program_options;
 using OptionTexts = std::map<std::string, std::string>;
 
-constexpr char kProjectPath[] = "project_path";
 constexpr size_t kHelpWidth = 96;
 
 bool IsForeign(const Command& command, const std::string& name) {
@@ -196,6 +195,12 @@ bool ParseCommandLine(const Command& command, const std::vector<std::string>& ar
   return true;
 }
 
+std::string OptionHelp(const OptionInfo& option) {
+  if (option.required) return option.help;
+  const std::string legal = LegalValues(option);
+  return option.help + (legal.empty() ? "" : "; " + legal) + "; " + option.origin;
+}
+
 void PrintCommandHelp(const Command& command, const OptionTable& table, std::ostream& out) {
   out << "colmap_seapoint " << command.name << ": " << command.summary << "\n\n"
       << "  -h [ --help ]\n"
@@ -204,14 +209,8 @@ void PrintCommandHelp(const Command& command, const OptionTable& table, std::ost
       << "        a value on the command line wins\n";
   for (const OptionInfo& option : table.Options()) {
     out << "  --" << option.name;
-    if (option.required) {
-      out << " (required)\n";
-      PrintWrapped(option.help, out);
-      continue;
-    }
-    out << " (=" << option.default_value << ")\n";
-    const std::string legal = LegalValues(option);
-    PrintWrapped(option.help + (legal.empty() ? "" : "; " + legal) + "; " + option.origin, out);
+    out << (option.required ? " (required)" : " (=" + option.default_value + ")") << "\n";
+    PrintWrapped(OptionHelp(option), out);
   }
   if (!command.foreign.group.empty()) {
     out << "  --" << command.foreign.group << ".<option> VALUE\n";

@@ -1,0 +1,92 @@
+# cmake --install and cpack: the program with its man page and completion, and the libraries with
+# their headers for find_package(colmap_seapoint). Two components, two Debian packages.
+include(CMakePackageConfigHelpers)
+
+set(package_doc_dir ${CMAKE_INSTALL_DATADIR}/doc/colmap-seapoint)
+set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/colmap_seapoint)
+
+# --- program -------------------------------------------------------------------------------------
+install(TARGETS colmap_seapoint RUNTIME COMPONENT program)
+install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
+  DESTINATION ${package_doc_dir} COMPONENT program)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE
+  DESTINATION ${package_doc_dir} RENAME copyright COMPONENT program)
+
+# The program itself writes them, from its option tables. Not where it cannot, or need not, run.
+if(NOT CMAKE_CROSSCOMPILING AND NOT SEAPOINT_SANITIZE)
+  set(manual_dir ${CMAKE_BINARY_DIR}/manual)
+  add_custom_command(
+    OUTPUT ${manual_dir}/colmap_seapoint.1 ${manual_dir}/completions/colmap_seapoint
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${manual_dir}/completions
+    COMMAND $<TARGET_FILE:colmap_seapoint> help --format man > ${manual_dir}/colmap_seapoint.1
+    COMMAND $<TARGET_FILE:colmap_seapoint> help --format bash > ${manual_dir}/completions/colmap_seapoint
+    DEPENDS colmap_seapoint
+    COMMENT "Man page and bash completion"
+    VERBATIM)
+  add_custom_target(manual ALL
+    DEPENDS ${manual_dir}/colmap_seapoint.1 ${manual_dir}/completions/colmap_seapoint)
+  install(FILES ${manual_dir}/colmap_seapoint.1
+    DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
+  install(FILES ${manual_dir}/completions/colmap_seapoint
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
+endif()
+
+# --- libraries -----------------------------------------------------------------------------------
+foreach(box base feature densify flags simd)
+  set_target_properties(seapoint_${box} PROPERTIES EXPORT_NAME ${box})
+endforeach()
+install(TARGETS seapoint_base seapoint_feature seapoint_densify seapoint_flags seapoint_simd
+  EXPORT colmap_seapoint_targets
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+install(EXPORT colmap_seapoint_targets NAMESPACE colmap_seapoint::
+  FILE colmap_seapointTargets.cmake DESTINATION ${config_dir} COMPONENT development)
+# Below a folder of ours: "feature/..." is no name for /usr/include.
+set(header_dir ${CMAKE_INSTALL_INCLUDEDIR}/colmap_seapoint)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/colmap_seapoint/base
+  DESTINATION ${header_dir}/colmap_seapoint COMPONENT development FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/feature ${PROJECT_SOURCE_DIR}/densify
+  DESTINATION ${header_dir} COMPONENT development FILES_MATCHING PATTERN "*.h"
+  PATTERN "seapoint_tree.h" EXCLUDE PATTERN "local_flow.h" EXCLUDE)  # need nanoflann; internal
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/colmap_seapointConfig.cmake.in
+  ${CMAKE_BINARY_DIR}/colmap_seapointConfig.cmake INSTALL_DESTINATION ${config_dir})
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/colmap_seapointConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/colmap_seapointConfig.cmake
+  ${CMAKE_BINARY_DIR}/colmap_seapointConfigVersion.cmake
+  DESTINATION ${config_dir} COMPONENT development)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/library_users
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libcolmap-seapoint-dev/examples COMPONENT development)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libcolmap-seapoint-dev RENAME copyright
+  COMPONENT development)
+
+# --- Debian packages: scripts/make_deb.sh --------------------------------------------------------
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME colmap-seapoint)
+set(CPACK_PACKAGE_VENDOR "the colmap_seapoint authors")
+set(CPACK_PACKAGE_CONTACT "the colmap_seapoint authors <colmap-seapoint@localhost>")
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL program development)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
+  "dense point clouds from underwater pictures
+SeaPoints are found in any water, poses come from the unmodified COLMAP, and
+then only what is new is densified, pair by pair along the track.")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME colmap-seapoint)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+# Only automatic_reconstructor calls it, and it may be another build of COLMAP (--colmap_path).
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "colmap (>= 3.8)")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
+  "dense point clouds from underwater pictures: libraries
+Static libraries, headers and CMake targets: colmap_seapoint::feature finds
+and matches SeaPoints, colmap_seapoint::densify makes clouds.")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libcolmap-seapoint-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
+  "libeigen3-dev, libopencv-dev (>= 4.5), libceres-dev (>= 2.0), libhwy-dev (>= 1.0.3), pkg-config")
+include(CPack)
