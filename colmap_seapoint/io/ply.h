@@ -43,9 +43,8 @@ class CloudWriter {
   uint64_t num_skipped_ = 0;
 };
 
-// Reads the vertices of any binary_little_endian or ASCII PLY with float or double x y z; normals
-// and colours where present (else zero). Extra properties and elements are skipped. Throws Error
-// naming file and finding: missing, truncated, not a PLY, big-endian, points that are not finite.
+// All vertices of any PLY that CloudReader reads (ply_reader.h), positions as float. Throws Error
+// as it does.
 std::vector<CloudPoint> ReadCloud(const std::filesystem::path& path);
 
 }  // namespace colmap_seapoint

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMaxHeaderLines = 10000;
 constexpr size_t kMaxLineBytes = 4096;
-constexpr const char* kRemedy = "save the cloud again as binary little-endian or ASCII PLY";
+constexpr const char* kRemedy = "save the cloud again as binary or ASCII PLY";
 
 std::optional<PlyType> FindType(const std::string& name) {
   static const std::map<std::string, PlyType> kTypes = {
@@ -74,7 +74,8 @@ bool ParseLine(const std::string& line, PlyHeader* header, bool* has_format) {
     std::string format, version;
     words >> format >> version;
     header->is_ascii = format == "ascii";
-    *has_format = header->is_ascii || format == "binary_little_endian";
+    header->is_big_endian = format == "binary_big_endian";
+    *has_format = header->is_ascii || header->is_big_endian || format == "binary_little_endian";
     return *has_format && version == "1.0";
   }
   if (keyword == "element") {

@@ -1,4 +1,4 @@
-// The header of a PLY file. For ply.cc only.
+// The header of a PLY file. For ply_reader.cc only.
 #pragma once
 
 #include <cstdint>
@@ -32,6 +32,7 @@ struct PlyElement {
 
 struct PlyHeader {
   bool is_ascii = false;
+  bool is_big_endian = false;
   std::vector<PlyElement> elements;
 };
 

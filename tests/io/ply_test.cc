@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
+#include "colmap_seapoint/io/distance_cloud.h"
+#include "colmap_seapoint/io/ply_reader.h"
 #include "test_files.h"
 
 namespace colmap_seapoint {
@@ -118,6 +121,101 @@ TEST(ReadCloud, BinaryWithListsBeforeAndInVertices) {
   EXPECT_EQ(points[0].xyz, Eigen::Vector3f(1, 2, 3));
 }
 
+// Turns the bytes of values of the sizes given, record after record.
+std::string BigEndian(std::string bytes, const std::vector<size_t>& sizes) {
+  for (size_t at = 0; at < bytes.size();) {
+    for (const size_t size : sizes) {
+      const auto begin = bytes.begin() + static_cast<std::ptrdiff_t>(at);
+      std::reverse(begin, begin + static_cast<std::ptrdiff_t>(size));
+      at += size;
+    }
+  }
+  return bytes;
+}
+
+TEST(CloudReader, BigEndianInAnyOrderAndType) {
+  const TempDir dir;
+  std::string records;
+  for (int i = 0; i < 3; ++i) {
+    const int16_t z = static_cast<int16_t>(-300 + i);
+    const double y = 1e-9 + i;
+    const float x = 0.5f + static_cast<float>(i), ny = -1;
+    const uint16_t red = 0xffff;
+    const int32_t quality = 7;
+    records.append(reinterpret_cast<const char*>(&z), 2);
+    records.append(reinterpret_cast<const char*>(&red), 2);
+    records.append(reinterpret_cast<const char*>(&y), 8);
+    records.append(reinterpret_cast<const char*>(&ny), 4);
+    records.append(reinterpret_cast<const char*>(&quality), 4);
+    records.append(reinterpret_cast<const char*>(&x), 4);
+  }
+  const std::string fields =
+      "element vertex 3\nproperty short z\nproperty ushort red\nproperty double y\n"
+      "property float ny\nproperty int quality\nproperty float x\nend_header\n";
+  WriteBytes(dir / "little.ply", "ply\nformat binary_little_endian 1.0\n" + fields + records);
+  WriteBytes(dir / "big.ply", "ply\nformat binary_big_endian 1.0\n" + fields +
+                                  BigEndian(records, {2, 2, 8, 4, 4, 4}));
+  for (const char* name : {"little.ply", "big.ply"}) {
+    CloudReader reader(dir / name);
+    EXPECT_EQ(reader.NumPoints(), 3u);
+    EXPECT_FALSE(reader.HasNormals());
+    EXPECT_FALSE(reader.HasColors());
+    EXPECT_FALSE(reader.FitsFloat());
+    CloudVertex vertex;
+    for (int i = 0; i < 3; ++i) {
+      ASSERT_TRUE(reader.Next(&vertex));
+      EXPECT_EQ(vertex.xyz, Eigen::Vector3d(0.5 + i, 1e-9 + i, -300 + i)) << name;
+      EXPECT_EQ(vertex.normal, Eigen::Vector3f(0, -1, 0));
+      EXPECT_EQ(vertex.rgb, (std::array<uint8_t, 3>{255, 0, 0}));
+    }
+    EXPECT_FALSE(reader.Next(&vertex));
+  }
+}
+
+TEST(CloudReader, KeepsWhatAFloatWouldRound) {
+  const TempDir dir;
+  WriteBytes(dir / "a.ply",
+             "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nproperty double y\n"
+             "property double z\nend_header\n500000.123456 5000000.654321 -31.5\n");
+  CloudReader reader(dir / "a.ply");
+  CloudVertex vertex;
+  ASSERT_TRUE(reader.Next(&vertex));
+  EXPECT_EQ(vertex.xyz, Eigen::Vector3d(500000.123456, 5000000.654321, -31.5));
+}
+
+TEST(CloudReader, FloatsAreKnownToFit) {
+  const TempDir dir;
+  WriteCloud(dir / "fused.ply", 2);
+  const CloudReader reader(dir / "fused.ply");
+  EXPECT_TRUE(reader.FitsFloat());
+  EXPECT_TRUE(reader.HasNormals());
+  EXPECT_TRUE(reader.HasColors());
+}
+
+TEST(DistanceCloud, IsReadAsACloud) {
+  const TempDir dir;
+  for (const bool as_float : {true, false}) {
+    std::filesystem::remove(dir / "d.ply");
+    DistanceCloudWriter writer(dir / "d.ply", 2, as_float, "red from 3 on");
+    writer.Add({500000.123, 2, 3}, {1, 2, 3}, 0.5);
+    writer.Add({4, 5, 6}, {7, 8, 9}, 1.5);
+    EXPECT_FALSE(std::filesystem::exists(dir / "d.ply"));
+    writer.Finish();
+    CloudReader reader(dir / "d.ply");
+    CloudVertex vertex;
+    ASSERT_TRUE(reader.Next(&vertex));
+    EXPECT_EQ(vertex.xyz.x(), as_float ? 500000.125 : 500000.123);
+    EXPECT_EQ(vertex.rgb, (std::array<uint8_t, 3>{1, 2, 3}));
+    ASSERT_TRUE(reader.Next(&vertex));
+    EXPECT_FALSE(reader.Next(&vertex));
+    const std::string bytes = ReadBytes(dir / "d.ply");
+    float distance;
+    std::memcpy(&distance, bytes.data() + bytes.size() - 4, 4);
+    EXPECT_EQ(distance, 1.5f);
+    EXPECT_NE(bytes.find("\nproperty float distance\nend_header\n"), std::string::npos);
+  }
+}
+
 TEST(ReadCloud, EveryTruncationIsAnError) {
   const TempDir dir;
   WriteCloud(dir / "fused.ply", 3);
@@ -141,7 +239,10 @@ TEST(ReadCloud, HostileHeaders) {
       {start + "element vertex 1\nproperty quad x\n", "line 4"},
       {start + "property float x\n", "line 3"},
       {start + "end_header\n", "no element 'vertex'"},
-      {"ply\nformat binary_big_endian 1.0\n", "line 2"},
+      {"ply\nformat binary_middle_endian 1.0\n", "line 2"},
+      {"ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nproperty double y\n"
+       "property double z\nend_header\n1 1e300 2\n",
+       "vertex 0 is too far away"},
       {"ply\nelement vertex 0" + vertex + "end_header\n", "names no format"},
       {"ply\n" + std::string(100000, 'x'), "does not end"},
       {"ply\nformat ascii 1.0\nelement vertex 1" + vertex + "end_header\n1 2 zebra\n",
