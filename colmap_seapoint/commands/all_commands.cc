@@ -1,4 +1,5 @@
 #include "colmap_seapoint/commands/automatic_reconstructor.h"
+#include "colmap_seapoint/commands/cloud_comparer.h"
 #include "colmap_seapoint/commands/command.h"
 #include "colmap_seapoint/commands/feature_extractor.h"
 #include "colmap_seapoint/commands/matchers.h"
@@ -19,6 +20,8 @@ std::vector<Command> AllCommands() {
                   RunSpatialMatcher),
       MakeCommand("partial_densifier", "COLMAP model and pictures -> one dense cloud",
                   RunPartialDensifier),
+      MakeCommand("cloud_comparer", "two clouds in one frame -> accuracy, completeness, density",
+                  RunCloudComparer),
       MakeCommand("automatic_reconstructor", "a folder of pictures -> dense clouds, all in one",
                   RunAutomaticReconstructor),
   };

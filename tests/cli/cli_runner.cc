@@ -74,16 +74,18 @@ CliResult RunProgram(const std::string& program, const std::vector<std::string>&
   if (child == 0) Execute(program, arguments, options, folder / "out", folder / "err");
   CliResult result;
   int status = 0;
-  while (waitpid(child, &status, WNOHANG) == 0) {
+  rusage usage{};
+  while (wait4(child, &status, WNOHANG, &usage) == 0) {
     const double seconds = SecondsSince(start);
     result.timed_out = seconds > options.timeout_seconds;
     if (result.timed_out || (options.kill_when && options.kill_when(seconds))) {
       kill(child, SIGKILL);
-      waitpid(child, &status, 0);
+      wait4(child, &status, 0, &usage);
       break;
     }
     std::this_thread::sleep_for(kPoll);
   }
+  result.peak_rss_bytes = 1024 * static_cast<uint64_t>(usage.ru_maxrss);
   if (WIFEXITED(status)) result.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) result.signal_number = WTERMSIG(status);
   result.out = ReadBytes(folder / "out");

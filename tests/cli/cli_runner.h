@@ -3,6 +3,7 @@
 
 #include <sys/types.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -24,6 +25,7 @@ struct CliResult {
   int exit_code = -1;  // -1: it did not exit by itself
   int signal_number = 0;
   bool timed_out = false;
+  uint64_t peak_rss_bytes = 0;
   std::string out, err;
 
   std::string LastErrorLine() const;

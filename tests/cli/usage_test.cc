@@ -15,7 +15,8 @@ CliResult RunSeaPoint(const std::vector<std::string>& arguments, const CliOption
 
 const std::vector<std::string> kCommands = {"feature_extractor", "sequential_matcher",
                                             "exhaustive_matcher", "spatial_matcher",
-                                            "partial_densifier", "automatic_reconstructor"};
+                                            "partial_densifier", "cloud_comparer",
+                                            "automatic_reconstructor"};
 
 TEST(Usage, HelpListsEveryCommand) {
   for (const char* word : {"help", "-h", "--help"}) {

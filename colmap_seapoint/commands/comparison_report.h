@@ -1,0 +1,22 @@
+// A cloud comparison as JSON and as a table.
+#pragma once
+
+#include <string>
+
+#include "colmap_seapoint/compare/cloud_comparison.h"
+
+namespace colmap_seapoint {
+
+struct ComparisonReport {
+  std::string input_path, reference_path;
+  bool unit_in_metres = false;
+  CloudComparison comparison;
+};
+
+// Every figure with its definition beside it; figures that do not exist are null.
+std::string ComparisonJson(const ComparisonReport& report);
+
+// For a person: one screen.
+std::string ComparisonTable(const ComparisonReport& report);
+
+}  // namespace colmap_seapoint
