@@ -75,7 +75,9 @@ largest_model() {
 # RMS error of the camera centres, mm; a dash where there is no truth.
 centres_of() {  # SET_FOLDER MODEL
   if [ ! -f "$1/truth/survey.json" ]; then echo -; return; fi
-  "$bin/demo_survey" score --survey_path "$1" --input_path "$2" 2>/dev/null |
+  colmap model_converter --input_path "$2" --output_path "$2/points.ply" --output_type PLY \
+    >/dev/null 2>&1
+  "$bin/demo_survey" score --survey_path "$1" --input_path "$2" --cloud_path "$2/points.ply" |
     awk '/camera centres, RMS error/ { print $(NF - 1) }'
 }
 
