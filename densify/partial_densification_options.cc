@@ -35,6 +35,10 @@ void PartialDensificationOptions::Bind(OptionTable* table) {
              "draw every pair's figures (paper, Figures 10, 11, 13, 15, 17) into "
              "OUTPUT_PATH/debug",
              "ours");
+  table->Add(group + "write_maps", &write_maps,
+             "make OUTPUT_PATH a dense workspace of COLMAP: undistorted pictures, their model, and "
+             "the cloud as every picture's depth and normal map",
+             "ours");
 }
 
 std::string PartialDensificationOptions::Check() const {

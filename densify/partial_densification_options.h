@@ -20,6 +20,7 @@ struct PartialDensificationOptions {
   int min_num_seeds = 20;
   bool completion = true;
   bool write_debug = false;
+  bool write_maps = false;
 
   void Bind(OptionTable* table);
   std::string Check() const;

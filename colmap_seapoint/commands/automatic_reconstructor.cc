@@ -301,7 +301,7 @@ RunReport Reconstruction::DensifyOnce(const fs::path& model, const std::string& 
   }
   state_.Forget(stage);
   RunReport report = DensifyModel(densifier);
-  report.stages.back().name += " " + name;
+  for (RunReport::Stage& part : report.stages) part.name += " " + name;
   state_.Finish(stage, fingerprint, report);
   return report;
 }

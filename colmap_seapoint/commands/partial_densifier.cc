@@ -14,6 +14,7 @@
 #include "colmap_seapoint/commands/picture_scale.h"
 #include "colmap_seapoint/commands/read_rig.h"
 #include "colmap_seapoint/commands/run_mapper.h"
+#include "colmap_seapoint/commands/write_maps.h"
 #include "colmap_seapoint/io/atomic_file.h"
 #include "colmap_seapoint/io/colmap_model.h"
 #include "colmap_seapoint/io/ply.h"
@@ -29,11 +30,21 @@ void Validate(const PartialDensifierOptions& options) {
   if (!std::filesystem::is_directory(options.image_path)) {
     throw Error(options.image_path, "there is no such folder", "check --image_path");
   }
+  if (options.densification.write_maps) {
+    CheckMapFolders(options.image_path, options.input_path, options.output_path);
+  }
 }
 
-// The model as the pictures see it.
-SparseModel ReadModel(const PartialDensifierOptions& options) {
-  SparseModel model = ReadSparseModel(options.input_path, ModelContent::kPosesAndPoints);
+// The model as the pictures see it. With maps in the order of its image ids, as sparse/ beside the
+// cloud has it: fused.ply.vis counts pictures in that order.
+SparseModel ReadModel(const PartialDensifierOptions& options,
+                      ModelContent content = ModelContent::kPosesAndPoints) {
+  SparseModel model = ReadSparseModel(options.input_path, content);
+  if (options.densification.write_maps) {
+    std::sort(model.images.begin(), model.images.end(), [](const auto& a, const auto& b) {
+      return a.image_id < b.image_id;
+    });
+  }
   for (const auto& [id, camera] : model.cameras) {
     if (camera.model != CameraModel::kEquirectangular) continue;
     throw Error(options.input_path,
@@ -102,13 +113,15 @@ void LogPairSeconds(const SequenceReport& sequence) {
 }
 
 SequenceReport Densify(const PartialDensifierOptions& options, const SparseModel& model,
-                       const StereoRig& rig, ModelPictures* pictures, CloudWriter* cloud) {
+                       const StereoRig& rig, ModelPictures* pictures, CloudWriter* cloud,
+                       MapWriter* maps) {
   std::unique_ptr<Progress> progress;
   DebugFigures figures(std::filesystem::path(options.output_path) / "debug", model);
   SequenceCallbacks callbacks;
   callbacks.sink = [&](const PartialCloud& part) {
     const std::array<uint32_t, 2> seen_by = {static_cast<uint32_t>(part.image_idx1),
                                              static_cast<uint32_t>(part.image_idx2)};
+    if (maps != nullptr) maps->AddPair(part, cloud->NumPoints());
     for (const DensePoint& point : part.points) {
       cloud->Add({point.xyz, point.normal, point.rgb}, seen_by.data(), 2);
     }
@@ -163,6 +176,18 @@ ExitCode DensifySideBySide(const PartialDensifierOptions& options,
               "see why in the pairs.csv below " + options.output_path);
 }
 
+// nullptr without PartialDensification.write_maps. Their sparse/ is written at once: it takes the
+// model's features too, which are forgotten again before densification.
+std::unique_ptr<MapWriter> StartMaps(const PartialDensifierOptions& options,
+                                     const SparseModel& model) {
+  if (!options.densification.write_maps) return nullptr;
+  auto maps = std::make_unique<MapWriter>(model, options.image_path, options.output_path,
+                                          options.densification,
+                                          EffectiveNumThreads(options.run.num_threads));
+  maps->WriteModel(ReadModel(options, ModelContent::kTriangulated));
+  return maps;
+}
+
 }  // namespace
 
 void PartialDensifierOptions::Bind(OptionTable* table) {
@@ -188,7 +213,7 @@ RunReport DensifyModel(const PartialDensifierOptions& options) {
   CheckWritableDir(output);
   SequenceReport sequence;
   {
-    StageTimer timer(&report, "partial_densifier");
+    auto timer = std::make_unique<StageTimer>(&report, "partial_densifier");
     const SparseModel model = ReadModel(options);
     report.images_in = static_cast<int64_t>(model.images.size());
     ModelPictures pictures(model, options.image_path, options.database_path, options.extraction,
@@ -201,13 +226,19 @@ RunReport DensifyModel(const PartialDensifierOptions& options) {
     }
     const StereoRig rig = ReadRig(options.rig, options.image_path, options.input_path, model);
     DescribeInputs(options, model, &report);
+    const std::unique_ptr<MapWriter> maps = StartMaps(options, model);
     CloudWriter cloud(output / "fused.ply");
-    sequence = Densify(options, model, rig, &pictures, &cloud);
+    sequence = Densify(options, model, rig, &pictures, &cloud, maps.get());
     FillReport(model, sequence, &report);
     LogPairSeconds(sequence);
     report.points = static_cast<int64_t>(cloud.NumPoints());
     WritePairsCsv(output / "pairs.csv", model, sequence);
     if (report.points > 0) cloud.Finish();
+    if (maps != nullptr && report.points > 0) {
+      timer = nullptr;
+      timer = std::make_unique<StageTimer>(&report, "write_maps");
+      maps->WriteMaps(sequence.left_out, &report);
+    }
   }
   WriteRunReport(output / "run.json", report);
   if (report.points > 0) {

@@ -5,7 +5,9 @@
 
 #include <cerrno>
 #include <cstring>
+#include <memory>
 #include <system_error>
+#include <vector>
 
 #include "colmap_seapoint/base/error.h"
 
@@ -111,6 +113,25 @@ void AtomicFile::Commit() {
 void WriteTextFile(const std::filesystem::path& path, const std::string& text) {
   AtomicFile file(path);
   file.Write(text);
+  file.Commit();
+}
+
+void CopyFileAtomically(const std::filesystem::path& from, const std::filesystem::path& to) {
+  std::error_code ignored;
+  if (std::filesystem::equivalent(from, to, ignored)) {
+    throw Error(to.string(), "is a link to the original " + from.string(),
+                "remove it, or choose another folder");
+  }
+  const int descriptor = open(from.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) Fail(from, "cannot be read", errno);
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> source(fdopen(descriptor, "rb"),
+                                                               &std::fclose);
+  AtomicFile file(to);
+  std::vector<char> buffer(kBufferBytes);
+  while (const size_t size = std::fread(buffer.data(), 1, buffer.size(), source.get())) {
+    file.Write(buffer.data(), size);
+  }
+  if (std::ferror(source.get()) != 0) Fail(from, "cannot be read to its end", EIO);
   file.Commit();
 }
 

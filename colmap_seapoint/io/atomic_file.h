@@ -34,6 +34,10 @@ class AtomicFile {
 // Writes `text` to `path` atomically.
 void WriteTextFile(const std::filesystem::path& path, const std::string& text);
 
+// The bytes of one file under another name, atomically. Throws Error; also when `to` is `from`
+// itself, by a link: a copy over the original is never meant.
+void CopyFileAtomically(const std::filesystem::path& from, const std::filesystem::path& to);
+
 // Throws Error when no file could be created in `dir` (which is created when missing).
 void CheckWritableDir(const std::filesystem::path& dir);
 

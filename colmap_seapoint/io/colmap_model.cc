@@ -148,6 +148,12 @@ void AddImage(const RecordPlace& place, const Eigen::Vector4d& qvec, PosedImage*
   kept.point3D_ids.reserve(ids.size() - static_cast<size_t>(num_none));
   std::copy_if(ids.begin(), ids.end(), std::back_inserter(kept.point3D_ids),
                [](uint64_t id) { return id != kNoPoint3D; });
+  if (read->content == ModelContent::kTriangulated) {
+    kept.points2D.reserve(kept.point3D_ids.size());
+    for (size_t i = 0; i < ids.size(); ++i) {
+      if (ids[i] != kNoPoint3D) kept.points2D.push_back(image.points2D[i]);
+    }
+  }
   read->model.images.push_back(std::move(kept));
 }
 

@@ -17,6 +17,9 @@ enum class ModelContent {
   // stay empty, and point3D_ids are those of the triangulated features alone, in their order.
   // Cannot be written again.
   kPosesAndPoints,
+  // The same, with the places of the triangulated features. Tracks still tell the features' numbers
+  // in the file, so that it cannot be written again either before they are made anew.
+  kTriangulated,
 };
 
 // Reads cameras, images and points3D from `dir`; binary is preferred when both exist. Throws Error

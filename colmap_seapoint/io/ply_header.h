@@ -1,4 +1,4 @@
-// The header of a PLY file. For ply_reader.cc only.
+// The header of a PLY file. For ply_reader.cc and cloud_ranges.cc only.
 #pragma once
 
 #include <cstdint>
