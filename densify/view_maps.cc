@@ -37,10 +37,10 @@ struct ViewMapRenderer::PairTerms {
 struct ViewMapRenderer::Patch {
   Eigen::Vector3d normal;
   double offset;
-  double rect_x, rect_y;     // of the sample, rect pixels
-  double tolerance;          // of depths of one surface
-  Eigen::Vector3f seen;      // what the normal map says; 0 from behind
-  int c0, c1, r0, r1;        // columns and rows that it may cover, inclusive
+  double rect_x, rect_y;  // of the sample, rect pixels
+  double tolerance;       // of depths of one surface
+  Eigen::Vector3f seen;   // what the normal map says; 0 from behind
+  int c0, c1, r0, r1;     // columns and rows that it may cover, inclusive
 };
 
 ViewMapRenderer::ViewMapRenderer(const Camera& camera, const Rigid3d& cam_from_world)

@@ -63,7 +63,7 @@ class ViewMapRenderer {
   Eigen::Matrix3d cam_from_pixel_;  // (c, r, 1) -> ray with z = 1
   Eigen::Matrix3d rotation_;
   Eigen::Vector3d translation_, center_;
-  Eigen::Matrix<double, 4, 3> sides_;  // of the view's pyramid, unit normals inwards, camera's frame
+  Eigen::Matrix<double, 4, 3> sides_;  // of the pyramid in view: unit normals inwards, camera frame
   ViewMaps maps_;
   GrayImage aside_;  // how far from its patch's middle a pixel lies, 255: at its rim
 };

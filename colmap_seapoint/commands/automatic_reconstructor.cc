@@ -295,7 +295,10 @@ RunReport Reconstruction::DensifyOnce(const fs::path& model, const std::string& 
                OptionsFingerprint(OptionValues(options_.densification)));
   const fs::path output = densifier.output_path;
   auto done = state_.ReadIfDone(stage, fingerprint);
-  if (done && (done->points == 0 || fs::exists(output / "fused.ply"))) {
+  const bool is_there =
+      fs::exists(output / "fused.ply") &&
+      (!options_.densification.write_maps || fs::exists(output / "stereo" / "fusion.cfg"));
+  if (done && (done->points == 0 || is_there)) {
     LogInfo("The cloud in " + output.string() + " is there already");
     return *done;
   }

@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <atomic>
 #include <memory>
 #include <mutex>
 #include <system_error>
@@ -135,9 +134,8 @@ ViewMaps MapWriter::DrawMaps(size_t image_idx, const CloudRanges& cloud) const {
     const PosedImage& image1 = model_.images[static_cast<size_t>(pair.image_idx1)];
     const PosedImage& image2 = model_.images[static_cast<size_t>(pair.image_idx2)];
     const Camera& camera1 = model_.cameras.at(image1.camera_id);
-    const auto geometry =
-        MakePairGeometry(camera1, image1.cam_from_world, model_.cameras.at(image2.camera_id),
-                         image2.cam_from_world);
+    const auto geometry = MakePairGeometry(
+        camera1, image1.cam_from_world, model_.cameras.at(image2.camera_id), image2.cam_from_world);
     SEAPOINT_CHECK(geometry.has_value());  // it has been densified
     const SampleFrame frame = SampleFrameOf(*geometry, SampleStep(camera1, options_));
     for (const Block& block : pair.blocks) {

@@ -31,8 +31,8 @@ class MapWriter {
  public:
   // `model` as densified, in the order of its image ids, outlives this.
   MapWriter(const SparseModel& model, const std::filesystem::path& image_path,
-            const std::filesystem::path& output_path,
-            const PartialDensificationOptions& options, int num_threads);
+            const std::filesystem::path& output_path, const PartialDensificationOptions& options,
+            int num_threads);
 
   // sparse/. `model` as read with ModelContent::kTriangulated, as the pictures see it.
   void WriteModel(const SparseModel& model) const;

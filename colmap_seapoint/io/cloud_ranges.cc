@@ -26,12 +26,11 @@ CloudRanges::CloudRanges(const std::filesystem::path& path) : path_(path) {
     }
     const PlyHeader header = ReadPlyHeader(path.string(), &stream);
     first_byte_ = static_cast<uint64_t>(stream.tellg());
-    const bool is_ours = !header.is_ascii && header.elements.size() == 1 &&
+    const bool is_ours = !header.is_ascii && !header.is_big_endian && header.elements.size() == 1 &&
                          header.elements[0].properties.size() == 9 &&
                          header.elements[0].MinRowBytes() == kPointBytes;
     if (is_ours) num_points_ = header.elements[0].count;
-    if (!is_ours ||
-        std::filesystem::file_size(path) != first_byte_ + num_points_ * kPointBytes) {
+    if (!is_ours || std::filesystem::file_size(path) != first_byte_ + num_points_ * kPointBytes) {
       throw Error(path.string(), "is no cloud of this program", "let it be written again");
     }
   }
@@ -49,9 +48,8 @@ std::vector<CloudPoint> CloudRanges::Read(uint64_t first, uint64_t count) const 
   std::vector<char> bytes(count * kPointBytes);
   size_t done = 0;
   while (done < bytes.size()) {
-    const ssize_t got =
-        pread(descriptor_, bytes.data() + done, bytes.size() - done,
-              static_cast<off_t>(first_byte_ + first * kPointBytes + done));
+    const ssize_t got = pread(descriptor_, bytes.data() + done, bytes.size() - done,
+                              static_cast<off_t>(first_byte_ + first * kPointBytes + done));
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) throw Error(path_.string(), "cannot be read to its end", "check the disk");
     done += static_cast<size_t>(got);

@@ -50,8 +50,8 @@ fs::path NormalMapPath(const fs::path& workspace, const std::string& image_name)
 void CreateDenseWorkspaceFolders(const fs::path& workspace,
                                  const std::vector<std::string>& image_names) {
   const fs::path stereo = workspace / "stereo";
-  std::set<fs::path> folders = {workspace / "images", stereo / "depth_maps",
-                                stereo / "normal_maps", stereo / "consistency_graphs"};
+  std::set<fs::path> folders = {workspace / "images", stereo / "depth_maps", stereo / "normal_maps",
+                                stereo / "consistency_graphs"};
   for (const std::string& name : image_names) {
     folders.insert(UndistortedImagePath(workspace, name).parent_path());
     folders.insert(DepthMapPath(workspace, name).parent_path());

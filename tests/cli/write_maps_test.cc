@@ -24,9 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr int kNumPictures = 5;
 
-bool HasColmap() {
-  return RunProgram("/bin/sh", {"-c", "command -v colmap"}).exit_code == 0;
-}
+bool HasColmap() { return RunProgram("/bin/sh", {"-c", "command -v colmap"}).exit_code == 0; }
 
 class WriteMaps : public testing::Test {
  protected:
@@ -50,15 +48,14 @@ class WriteMaps : public testing::Test {
 
   static uint32_t NewId(uint32_t id) { return id < 100 ? 100 + 7 * id % 31 : id; }
 
-  CliResult Densify(const std::string& output, int num_threads = 2,
-                    const CliOptions& options = {}, bool write_maps = true) const {
-    return RunProgram(
-        SEAPOINT_PROGRAM,
-        {"partial_densifier", "--image_path", (folder_ / "images").string(), "--input_path",
-         (folder_ / "model").string(), "--output_path", (folder_ / output).string(),
-         "--num_threads", std::to_string(num_threads), "--PartialDensification.write_maps",
-         write_maps ? "1" : "0"},
-        options);
+  CliResult Densify(const std::string& output, int num_threads = 2, const CliOptions& options = {},
+                    bool write_maps = true) const {
+    return RunProgram(SEAPOINT_PROGRAM,
+                      {"partial_densifier", "--image_path", (folder_ / "images").string(),
+                       "--input_path", (folder_ / "model").string(), "--output_path",
+                       (folder_ / output).string(), "--num_threads", std::to_string(num_threads),
+                       "--PartialDensification.write_maps", write_maps ? "1" : "0"},
+                      options);
   }
 
   // What does not tell of time.
@@ -76,8 +73,8 @@ class WriteMaps : public testing::Test {
     const Camera& camera = model.cameras.at(image.camera_id);
     const auto pixel = camera.ImgFromCam(image.cam_from_world * point.cast<double>());
     if (!pixel) return -1e9;
-    return std::min({pixel->x(), pixel->y(), camera.width - pixel->x(),
-                     camera.height - pixel->y()});
+    return std::min(
+        {pixel->x(), pixel->y(), camera.width - pixel->x(), camera.height - pixel->y()});
   }
 
   // Which pictures see each point, of fused.ply.vis.
@@ -115,16 +112,15 @@ TEST_F(WriteMaps, SameFilesForAnyThreadsAndTheSameCloud) {
   ASSERT_EQ(Densify("without", 2, {}, false).exit_code, 0);
   EXPECT_TRUE(ReadBytes(folder_ / "without" / "fused.ply") == files.at("fused.ply"));
 
-  std::set<std::string> expected = {"fused.ply", "fused.ply.vis", "sparse/cameras.bin",
-                                    "sparse/images.bin", "sparse/points3D.bin",
-                                    "stereo/fusion.cfg", "stereo/patch-match.cfg"};
+  std::set<std::string> expected = {
+      "fused.ply",           "fused.ply.vis",     "sparse/cameras.bin",    "sparse/images.bin",
+      "sparse/points3D.bin", "stereo/fusion.cfg", "stereo/patch-match.cfg"};
   for (const PosedImage& image : model_.images) {
     expected.insert("images/" + image.name);
     expected.insert("stereo/depth_maps/" + image.name + ".geometric.bin");
     expected.insert("stereo/normal_maps/" + image.name + ".geometric.bin");
     // A pinhole's picture is undistorted: the same bytes.
-    EXPECT_TRUE(files.at("images/" + image.name) ==
-                ReadBytes(folder_ / "images" / image.name));
+    EXPECT_TRUE(files.at("images/" + image.name) == ReadBytes(folder_ / "images" / image.name));
   }
   std::set<std::string> names;
   for (const auto& [name, bytes] : files) names.insert(name);
@@ -255,8 +251,8 @@ TEST_F(WriteMaps, ColmapFusesThem) {
   options.environment["QT_QPA_PLATFORM"] = "offscreen";
   const std::string cloud = (folder_ / "colmap.ply").string();
   const CliResult result =
-      RunProgram("colmap",
-                 {"stereo_fusion", "--workspace_path", (folder_ / "dense").string(),
+      RunProgram("/usr/bin/env",
+                 {"colmap", "stereo_fusion", "--workspace_path", (folder_ / "dense").string(),
                   "--output_path", cloud, "--StereoFusion.min_num_pixels", "2"},
                  options);
   ASSERT_EQ(result.exit_code, 0) << result.Text();
@@ -265,12 +261,12 @@ TEST_F(WriteMaps, ColmapFusesThem) {
   // Squares of 4 x 4 pixels that hold points, which are compared for both.
   const double side = 4 * kStripRange / (1.2 * kStripWidth);
   const auto squares = [&](const std::vector<CloudPoint>& points) {
-    std::set<std::pair<int, int>> squares;
+    std::set<std::pair<int, int>> filled;
     for (const CloudPoint& point : points) {
-      squares.insert({static_cast<int>(std::floor(point.xyz.x() / side)),
-                      static_cast<int>(std::floor(point.xyz.y() / side))});
+      filled.insert({static_cast<int>(std::floor(point.xyz.x() / side)),
+                     static_cast<int>(std::floor(point.xyz.y() / side))});
     }
-    return squares;
+    return filled;
   };
   const auto in_ours = squares(ours), in_theirs = squares(theirs);
   std::vector<std::pair<int, int>> common;

@@ -28,8 +28,8 @@ struct Samples {
 
 Samples Sample(const World& world, const Viewpoint& view1, const Viewpoint& view2, int step,
                double normal_sign = 1) {
-  const auto geometry = MakePairGeometry(view1.camera, view1.cam_from_world, view2.camera,
-                                         view2.cam_from_world);
+  const auto geometry =
+      MakePairGeometry(view1.camera, view1.cam_from_world, view2.camera, view2.cam_from_world);
   Samples samples{SampleFrameOf(*geometry, step), {}};
   const double reach = 2 * kWidth;
   for (double y = -reach; y < reach; y += step) {
@@ -74,27 +74,26 @@ TEST(ViewMaps, PlaneIsExactAndWithoutGaps) {
   for (const int step : {1, 2, 4}) {
     const Samples samples = Sample(world, view1, view2, step);
     // Turned upside down, nearer, farther, from aside.
-    for (const Viewpoint& view :
-         {view1, StandAt(Pinhole(), {0.1, 0.1, 0.5}, {3, 5, 180}),
-          StandAt(Pinhole(), {0, 0.2, -0.8}, {0, 0, 45}),
-          StandAt(Pinhole(), {-0.6, 0, 0.1}, {0, 20, 0})}) {
+    for (const Viewpoint& view : {view1, StandAt(Pinhole(), {0.1, 0.1, 0.5}, {3, 5, 180}),
+                                  StandAt(Pinhole(), {0, 0.2, -0.8}, {0, 0, 45}),
+                                  StandAt(Pinhole(), {-0.6, 0, 0.1}, {0, 20, 0})}) {
       const ViewMaps maps = Draw(view, {samples});
       int num_seen = 0;
       for (int r = 0; r < kHeight; ++r) {
         for (int c = 0; c < kWidth; ++c) {
           const auto depth = TrueDepth(world, view, c, r);
           ASSERT_TRUE(depth.has_value());
-          const Eigen::Vector3d normal = view.cam_from_world.rotation *
-                                         (Eigen::AngleAxisd(25 * M_PI / 180,
-                                                            Eigen::Vector3d::UnitY()) *
-                                          -Eigen::Vector3d::UnitZ());
+          const Eigen::Vector3d normal =
+              view.cam_from_world.rotation *
+              (Eigen::AngleAxisd(25 * M_PI / 180, Eigen::Vector3d::UnitY()) *
+               -Eigen::Vector3d::UnitZ());
           if (maps.depth.At(c, r) == 0) continue;
           ++num_seen;
           ASSERT_NEAR(maps.depth.At(c, r), *depth, 1e-5 * *depth) << c << ' ' << r;
           const Eigen::Vector3d found(maps.normal.At(c, r, 0), maps.normal.At(c, r, 1),
                                       maps.normal.At(c, r, 2));
-          ASSERT_LT((found - normal).norm(), 1e-3) << found.transpose() << " / "
-                                                   << normal.transpose();
+          ASSERT_LT((found - normal).norm(), 1e-3)
+              << found.transpose() << " / " << normal.transpose();
         }
       }
       // Samples reach beyond all of these pictures.

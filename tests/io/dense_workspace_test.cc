@@ -27,8 +27,8 @@ TEST(DenseMap, BytesAreColmaps) {
   WriteDenseMap(dir / "n.bin", SomeMap(2));
   std::string expected = "3&2&2&";
   // One channel after the other, each row by row.
-  for (const float value : {0.5f, 2.5f, 4.5f, 6.5f, 8.5f, 10.5f, 1.5f, 3.5f, 5.5f, 7.5f, 9.5f,
-                            11.5f}) {
+  for (const float value :
+       {0.5f, 2.5f, 4.5f, 6.5f, 8.5f, 10.5f, 1.5f, 3.5f, 5.5f, 7.5f, 9.5f, 11.5f}) {
     expected.append(reinterpret_cast<const char*>(&value), sizeof(value));
   }
   EXPECT_EQ(ReadBytes(dir / "n.bin"), expected);
@@ -68,9 +68,8 @@ TEST(DenseWorkspace, FoldersAndLists) {
   const TempDir dir;
   const std::vector<std::string> names = {"a.jpg", "left/b c.png"};
   CreateDenseWorkspaceFolders(dir.Path(), names);
-  for (const std::string folder :
-       {"images/left", "stereo/depth_maps/left", "stereo/normal_maps/left",
-        "stereo/consistency_graphs"}) {
+  for (const std::string folder : {"images/left", "stereo/depth_maps/left",
+                                   "stereo/normal_maps/left", "stereo/consistency_graphs"}) {
     EXPECT_TRUE(fs::is_directory(dir / folder)) << folder;
   }
   WriteStereoConfigs(dir.Path(), names);
@@ -162,8 +161,8 @@ double FusedError(const TempDir& dir, double shift) {
     WriteDenseMap(NormalMapPath(dir.Path(), image.name), normals);
   }
   const std::string cloud = (dir / "x.ply").string();
-  EXPECT_EQ(RunColmap("stereo_fusion --workspace_path " + dir.Path().string() +
-                      " --output_path " + cloud + " --StereoFusion.min_num_pixels 2"),
+  EXPECT_EQ(RunColmap("stereo_fusion --workspace_path " + dir.Path().string() + " --output_path " +
+                      cloud + " --StereoFusion.min_num_pixels 2"),
             0);
   const std::vector<CloudPoint> points = ReadCloud(cloud);
   EXPECT_GT(points.size(), 500u);
