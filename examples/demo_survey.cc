@@ -1,4 +1,5 @@
 // demo_survey generate: pictures of a made-up seabed with their exact truth.
+// demo_survey control: a scale bar and noisy positions for such a survey.
 // demo_survey score: a COLMAP model and its dense cloud against that truth.
 #include <boost/program_options.hpp>
 #include <cstdio>
@@ -13,6 +14,7 @@
 #include "colmap_seapoint/io/image_file.h"
 #include "colmap_seapoint/io/ply.h"
 #include "examples/subcommands.h"
+#include "examples/survey/control.h"
 #include "examples/survey/score.h"
 #include "examples/survey/survey.h"
 
@@ -23,6 +25,7 @@ namespace po = boost::program_options;
 
 constexpr char kUsage[] =
     "demo_survey generate --output_path DIR [options]\n"
+    "demo_survey control --survey_path DIR --output_path DIR [options]\n"
     "demo_survey score --survey_path DIR --input_path MODEL --cloud_path fused.ply [options]\n"
     "demo_survey <command> -h lists the options.\n";
 
@@ -74,6 +77,35 @@ int Generate(const std::vector<std::string>& arguments) {
   return 0;
 }
 
+int Control(const std::vector<std::string>& arguments) {
+  ControlOptions o;
+  std::string survey_path, output_path;
+  po::options_description description("demo_survey control");
+  auto add = description.add_options();
+  add("help,h", "this text");
+  add("survey_path", po::value(&survey_path)->required(), "folder of demo_survey generate");
+  add("output_path", po::value(&output_path)->required(),
+      "folder for bars.csv, targets.csv and positions.csv");
+  add("seed", Default(&o.seed), "of everything random");
+  add("bar_length", Default(&o.bar_length), "of the scale bar, about, metres");
+  add("pixel_noise", Default(&o.pixel_noise), "standard deviation of the targets' marks, pixels");
+  add("position_noise", Default(&o.position_noise),
+      "standard deviation of the cameras' positions, each axis, metres");
+  add("outlier_share", Default(&o.outlier_share), "share of positions that are grossly wrong, 0..1");
+  add("outlier_size", Default(&o.outlier_size), "how far these are off, metres");
+  if (!ParseOptions(description, arguments)) return 0;
+  const std::string problem = CheckControlOptions(o);
+  if (!problem.empty()) throw UsageError(problem);
+  const ControlTables tables = MakeControl(ReadSurveyTruth(survey_path), o);
+  const std::filesystem::path dir = output_path;
+  CheckWritableDir(dir);
+  WriteTextFile(dir / "bars.csv", tables.bars);
+  WriteTextFile(dir / "targets.csv", tables.targets);
+  WriteTextFile(dir / "positions.csv", tables.positions);
+  std::printf("bars.csv, targets.csv and positions.csv in %s\n", output_path.c_str());
+  return 0;
+}
+
 int Score(const std::vector<std::string>& arguments) {
   ScoreOptions o;
   std::string survey_path, input_path, cloud_path, output_path;
@@ -110,5 +142,5 @@ int Score(const std::vector<std::string>& arguments) {
 int main(int argc, char** argv) {
   using namespace colmap_seapoint;
   return RunSubcommands(argc, argv, "demo_survey", kUsage,
-                        {{"generate", Generate}, {"score", Score}});
+                        {{"generate", Generate}, {"control", Control}, {"score", Score}});
 }
