@@ -3,6 +3,7 @@
 #include "colmap_seapoint/commands/command.h"
 #include "colmap_seapoint/commands/feature_extractor.h"
 #include "colmap_seapoint/commands/matchers.h"
+#include "colmap_seapoint/commands/model_scaler.h"
 #include "colmap_seapoint/commands/partial_densifier.h"
 
 namespace colmap_seapoint {
@@ -18,6 +19,8 @@ std::vector<Command> AllCommands() {
                   RunExhaustiveMatcher),
       MakeCommand("spatial_matcher", "match each picture with those taken near it",
                   RunSpatialMatcher),
+      MakeCommand("model_scaler", "COLMAP model and cloud -> metres, from scale bars and positions",
+                  RunModelScaler),
       MakeCommand("partial_densifier", "COLMAP model and pictures -> one dense cloud",
                   RunPartialDensifier),
       MakeCommand("cloud_comparer", "two clouds in one frame -> accuracy, completeness, density",

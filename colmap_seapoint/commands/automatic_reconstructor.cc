@@ -14,6 +14,7 @@
 #include "colmap_seapoint/commands/read_rig.h"
 #include "colmap_seapoint/commands/reconstruction_summary.h"
 #include "colmap_seapoint/commands/run_mapper.h"
+#include "colmap_seapoint/commands/scale_models.h"
 #include "colmap_seapoint/commands/second_chance.h"
 #include "colmap_seapoint/commands/workspace_state.h"
 #include "colmap_seapoint/io/atomic_file.h"
@@ -69,6 +70,7 @@ class Reconstruction {
   // True when pictures were found that deserve SI-SeaPoints: extract and match once more.
   bool FindSecondChances();
   void MapSparsely();
+  void ScaleModels();
   void DensifyModels();
   RunReport WriteReport();
 
@@ -83,7 +85,8 @@ class Reconstruction {
   std::string MapperFingerprint() const;
   void AddReport(const RunReport& part);
   void ReadModels();
-  RunReport DensifyOnce(const fs::path& model, const std::string& name);
+  RunReport DensifyOnce(const fs::path& model, const std::string& name,
+                        const std::string& scaling_fingerprint);
   void RemoveStaleClouds(size_t num_models);
 
   const AutomaticReconstructorOptions& options_;
@@ -262,6 +265,7 @@ void Reconstruction::ReadModels() {
   for (const fs::path& path : ListModels(workspace_ / "sparse")) {
     ModelSummary model;
     model.name = path.filename().string();
+    model.path = path;
     const SparseModel read = ReadSparseModel(path, ModelContent::kPosesAndPoints);
     for (const PosedImage& image : read.images) {
       model.pictures.push_back(image.name);
@@ -278,7 +282,23 @@ void Reconstruction::ReadModels() {
   }
 }
 
-RunReport Reconstruction::DensifyOnce(const fs::path& model, const std::string& name) {
+// Into sparse_scaled/<k>: the mapper's own models stay as they are.
+void Reconstruction::ScaleModels() {
+  ModelScalerOptions scaler;
+  scaler.image_path = image_path_.string();
+  scaler.rig = options_.rig;
+  scaler.sources = options_.scale;
+  scaler.run = options_.run;
+  AddReport(ScaleAllModels(scaler, workspace_, mapper_fingerprint_, &state_, &models_));
+  for (const ModelSummary& model : models_) {
+    report_.units = report_.units.empty() || report_.units == model.units_word
+                        ? model.units_word
+                        : "metres and arbitrary, see summary.txt";
+  }
+}
+
+RunReport Reconstruction::DensifyOnce(const fs::path& model, const std::string& name,
+                                       const std::string& scaling_fingerprint) {
   PartialDensifierOptions densifier;
   densifier.image_path = image_path_.string();
   densifier.input_path = model.string();
@@ -292,6 +312,7 @@ RunReport Reconstruction::DensifyOnce(const fs::path& model, const std::string& 
   const std::string stage = "dense_" + name;
   const std::string fingerprint =
       HashText(kDensificationVersion + mapper_fingerprint_ + name + "," + options_.rig + "," +
+               scaling_fingerprint +
                OptionsFingerprint(OptionValues(options_.densification)));
   const fs::path output = densifier.output_path;
   auto done = state_.ReadIfDone(stage, fingerprint);
@@ -322,7 +343,7 @@ void Reconstruction::DensifyModels() {
   CheckWritableDir(workspace_ / "dense");
   RemoveStaleClouds(models_.size());
   for (ModelSummary& model : models_) {
-    model.densification = DensifyOnce(workspace_ / "sparse" / model.name, model.name);
+    model.densification = DensifyOnce(model.path, model.name, model.scaling_fingerprint);
     model.cloud_path = workspace_ / "dense" / model.name / "fused.ply";
     AddReport(model.densification);
     report_.pairs += model.densification.pairs;
@@ -348,14 +369,16 @@ RunReport Reconstruction::WriteReport() {
 }
 
 void Validate(const AutomaticReconstructorOptions& options) {
-  for (const std::string& problem : {options.reader.Check(), options.extraction.Check(),
-                                     options.densification.Check(), CheckRig(options.rig)}) {
+  for (const std::string& problem :
+       {options.reader.Check(), options.extraction.Check(), options.densification.Check(),
+        CheckRig(options.rig), options.scale.Check()}) {
     if (!problem.empty()) throw UsageError(problem);
   }
   if (!fs::is_directory(options.image_path)) {
     throw Error(options.image_path, "there is no such folder", "check --image_path");
   }
   CheckRigFolders(options.rig, options.image_path);
+  CheckScaleTables(options.scale);
 }
 
 }  // namespace
@@ -380,6 +403,7 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
              "--ImageReader.camera_params or --Mapper.ba_refine_*",
              "ours");
   table->Add("rig", &rig, kRigHelp, "paper 4");
+  scale.Bind(table);
   reader.Bind(table);
   extraction.Bind(table);
   pairs.Bind(table);
@@ -412,6 +436,7 @@ ExitCode RunAutomaticReconstructor(const AutomaticReconstructorOptions& options)
     reconstruction.MatchFeatures();
   }
   reconstruction.MapSparsely();
+  reconstruction.ScaleModels();
   reconstruction.DensifyModels();
   return ExitCodeOf(reconstruction.WriteReport());
 }

@@ -9,6 +9,7 @@
 #include "colmap_seapoint/commands/image_reader.h"
 #include "colmap_seapoint/commands/matchers.h"
 #include "colmap_seapoint/commands/run_options.h"
+#include "colmap_seapoint/commands/scale_measurements.h"
 #include "densify/partial_densification_options.h"
 #include "feature/match_features.h"
 #include "feature/seapoint_detector.h"
@@ -23,6 +24,7 @@ struct AutomaticReconstructorOptions {
   std::string matcher = "auto";
   bool adjust_principal_point = true;
   std::string rig;
+  ScaleSources scale;
   ImageReaderOptions reader;
   SeaPointExtractionOptions extraction;
   SequentialPairOptions pairs;

@@ -17,6 +17,7 @@
 #include "colmap_seapoint/commands/write_maps.h"
 #include "colmap_seapoint/io/atomic_file.h"
 #include "colmap_seapoint/io/colmap_model.h"
+#include "colmap_seapoint/io/model_units.h"
 #include "colmap_seapoint/io/ply.h"
 
 namespace colmap_seapoint {
@@ -196,7 +197,7 @@ void PartialDensifierOptions::Bind(OptionTable* table) {
                      "COLMAP model, binary or text; or a folder of several, each densified into "
                      "a folder of its name");
   table->AddRequired("output_path", &output_path,
-                     "folder for fused.ply, fused.ply.vis, pairs.csv and run.json");
+                     "folder for fused.ply, fused.ply.vis, pairs.csv, units.json and run.json");
   table->Add("database_path", &database_path,
              "COLMAP database with SeaPoints and matches; empty = they are found again", "ours");
   table->Add("rig", &rig, kRigHelp, "paper 4");
@@ -211,6 +212,8 @@ RunReport DensifyModel(const PartialDensifierOptions& options) {
   RunReport report = StartReport("partial_densifier", options, options.run);
   const std::filesystem::path output = options.output_path;
   CheckWritableDir(output);
+  const ModelUnits units = ReadModelUnits(options.input_path).value_or(ModelUnits());
+  report.units = UnitsWord(units);
   SequenceReport sequence;
   {
     auto timer = std::make_unique<StageTimer>(&report, "partial_densifier");
@@ -234,6 +237,7 @@ RunReport DensifyModel(const PartialDensifierOptions& options) {
     report.points = static_cast<int64_t>(cloud.NumPoints());
     WritePairsCsv(output / "pairs.csv", model, sequence);
     if (report.points > 0) cloud.Finish();
+    WriteModelUnits(output, units);
     if (maps != nullptr && report.points > 0) {
       timer = nullptr;
       timer = std::make_unique<StageTimer>(&report, "write_maps");
@@ -243,7 +247,7 @@ RunReport DensifyModel(const PartialDensifierOptions& options) {
   WriteRunReport(output / "run.json", report);
   if (report.points > 0) {
     LogInfo(std::to_string(report.points) + " points of " + std::to_string(report.pairs) +
-            " pairs in " + (output / "fused.ply").string());
+            " pairs in " + (output / "fused.ply").string() + " (" + UnitsText(units) + ")");
   }
   return report;
 }

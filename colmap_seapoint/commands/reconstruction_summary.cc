@@ -14,6 +14,8 @@ std::string SummaryText(const std::vector<ModelSummary>& models, const RunReport
     out << "model " << model.name << ": " << model.pictures.size() << " pictures, "
         << model.densification.pairs << " pairs, " << model.densification.points << " points";
     if (model.densification.points > 0) out << " in " << model.cloud_path.string();
+    out << "\n  " << model.units;
+    if (!model.scaling.empty()) out << " (" << model.scaling << ")";
     out << "\n";
   }
   for (const RunReport::LeftOut& left_out : report.left_out) {

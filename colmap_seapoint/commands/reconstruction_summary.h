@@ -12,9 +12,14 @@ namespace colmap_seapoint {
 
 struct ModelSummary {
   std::string name;                   // "0"
+  std::filesystem::path path;         // the model that is densified: sparse/0 or sparse_scaled/0
   std::vector<std::string> pictures;  // registered
   RunReport densification;
   std::filesystem::path cloud_path;
+  std::string units = "units arbitrary";  // or metres, and the frame
+  std::string units_word = "arbitrary";
+  std::string scaling_fingerprint;        // of all that the units depend on; empty: not scaled
+  std::string scaling;                    // one line: how the scale came about; empty: not scaled
 };
 
 // Plain words: pictures used and left out, models, clouds, times.

@@ -54,6 +54,7 @@ RunReport FromJson(const Json& json) {
   }
   report.pairs = json.at("pairs").get<int64_t>();
   report.points = json.at("points").get<int64_t>();
+  report.units = json.value("units", "");
   for (const Json& item : json.at("stages")) {
     report.stages.push_back({item.at("name"), item.at("wall_seconds"), item.at("cpu_seconds")});
   }
@@ -111,6 +112,7 @@ void WriteRunReport(const std::filesystem::path& path, const RunReport& report) 
   }
   json["pairs"] = report.pairs;
   json["points"] = report.points;
+  if (!report.units.empty()) json["units"] = report.units;
   json["stages"] = Json::array();
   for (const auto& [name, wall_seconds, cpu_seconds] : report.stages) {
     json["stages"].push_back(

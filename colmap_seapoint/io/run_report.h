@@ -39,6 +39,7 @@ struct RunReport {
   std::vector<LeftOut> left_out;
   int64_t pairs = 0;
   int64_t points = 0;
+  std::string units;  // of what was written: "arbitrary" or "metres"; empty where there are none
   std::vector<Stage> stages;
   std::vector<Input> inputs;
 };

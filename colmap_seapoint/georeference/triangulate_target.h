@@ -1,0 +1,35 @@
+// A target that a person has marked in several pictures (the end of a scale bar, a ground control
+// point): its place in the model (ours).
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "colmap_seapoint/base/camera.h"
+#include "colmap_seapoint/base/rigid3.h"
+
+namespace colmap_seapoint {
+
+struct TargetView {
+  const Camera* camera = nullptr;
+  Rigid3d cam_from_world;
+  Eigen::Vector2d pixel;  // COLMAP's convention: the first pixel's centre is (0.5, 0.5)
+};
+
+struct TriangulatedTarget {
+  std::string problem;  // why it has no place; empty: it has one
+  Eigen::Vector3d xyz = Eigen::Vector3d::Zero();  // model's frame
+  // Of xyz, model units squared, for marks that are 1 pixel off (the cameras taken as exact).
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  std::vector<double> errors;  // pixels, one a view; infinite behind a camera
+  std::vector<bool> is_used;   // one a view: within max_error
+};
+
+// The place that most views agree on, from the best of all pairs of rays (at least half a degree
+// apart), then by least squares over the views within `max_error` pixels of it. A problem, not an
+// exception, when there are fewer than two views, when no two rays meet, or when the views that
+// agree are not more than those that do not. Cost: the cube of the number of views.
+TriangulatedTarget TriangulateTarget(const std::vector<TargetView>& views, double max_error);
+
+}  // namespace colmap_seapoint
