@@ -1,5 +1,6 @@
 #include "colmap_seapoint/commands/scale_models.h"
 
+#include <map>
 #include <optional>
 #include <system_error>
 
@@ -78,6 +79,7 @@ RunReport ScaleAllModels(ModelScalerOptions scaler, const fs::path& workspace,
   const std::string fingerprint = Fingerprint(scaler, mapper_fingerprint);
   std::optional<Error> first_error;
   size_t num_scaled = 0;
+  std::map<std::string, std::vector<RunReport::LeftOut>> left_out;  // by name
   for (ModelSummary& model : *models) {
     scaler.input_path = (workspace / "sparse" / model.name).string();
     scaler.output_path = (folder / model.name).string();
@@ -85,7 +87,7 @@ RunReport ScaleAllModels(ModelScalerOptions scaler, const fs::path& workspace,
       const RunReport part = ScaleOnce(scaler, "scale_" + model.name, fingerprint, state);
       report.stages.insert(report.stages.end(), part.stages.begin(), part.stages.end());
       report.stages.back().name += " " + model.name;
-      for (const auto& left_out : part.left_out) report.left_out.push_back(left_out);
+      for (const auto& item : part.left_out) left_out[item.name].push_back(item);
       model.path = scaler.output_path;
       const auto units = ReadModelUnits(model.path);
       model.units = UnitsText(units);
@@ -100,6 +102,10 @@ RunReport ScaleAllModels(ModelScalerOptions scaler, const fs::path& workspace,
     }
   }
   if (num_scaled == 0 && first_error) throw *first_error;
+  // A bar lies in one model and not in the others: left out is what none could use.
+  for (const auto& [name, items] : left_out) {
+    if (items.size() == num_scaled) report.left_out.push_back(items.front());
+  }
   return report;
 }
 

@@ -307,12 +307,13 @@ class ScaledReconstruction : public ModelScaler {
                                           "0"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     CliOptions options;
-    options.environment["FAKE_COLMAP_MODE"] = "model";
+    options.environment["FAKE_COLMAP_MODE"] = mode_;
     return RunProgram(SEAPOINT_PROGRAM, arguments, options);
   }
   nlohmann::json At(const std::string& name) const {
     return nlohmann::json::parse(ReadBytes(folder_ / "ws" / name));
   }
+  std::string mode_ = "model";
 };
 
 TEST_F(ScaledReconstruction, UnitsAreSaidEverywhere) {
@@ -358,6 +359,35 @@ TEST_F(ScaledReconstruction, UnitsAreSaidEverywhere) {
   EXPECT_FALSE(fs::exists(folder_ / "ws/sparse_scaled"));
   EXPECT_EQ(ReadCloud(folder_ / "ws/dense/0/fused.ply").size(), unscaled.size());
   EXPECT_EQ(At("dense/0/units.json")["units"], "arbitrary");
+}
+
+TEST_F(ScaledReconstruction, TwoModelsAndABarInOneOfThem) {
+  WriteStrip(folder_ / "images", kNumPictures);
+  mode_ = "two_models";
+  // Seen by pictures of the first half only.
+  const Eigen::Vector3d left = model_.images[0].cam_from_world.OriginInSource();
+  const Eigen::Vector3d a = left + Eigen::Vector3d(-0.1, 0.2, kStripRange);
+  const Eigen::Vector3d b = left + Eigen::Vector3d(0, -0.3, kStripRange);
+  std::vector<std::string> arguments = {
+      "--scale_bars_path",
+      Write("bars.csv", "name1,name2,length_m,sigma_m\na,b," + Number(kScale * (b - a).norm()) +
+                            ",0.02\n"),
+      "--targets_path",
+      Write("targets.csv", "target,image,x,y\n" + Marks("a", a) + Marks("b", b))};
+  CliResult result = Reconstruct(arguments);
+  EXPECT_EQ(result.exit_code, 3) << result.Text();
+  EXPECT_EQ(At("report/run.json")["units"], "metres and arbitrary, see summary.txt");
+  ASSERT_EQ(At("report/run.json")["left_out"].size(), 1u);
+  EXPECT_EQ(At("report/run.json")["left_out"][0]["name"], "scale of sparse/1");
+  EXPECT_EQ(At("dense/0/units.json")["units"], "metres");
+  EXPECT_EQ(At("dense/1/units.json")["units"], "arbitrary");
+  // With positions both are scaled, and the bar is not missed in the second.
+  arguments.insert(arguments.end(), {"--positions_path", Write("nav.csv", PositionsText())});
+  result = Reconstruct(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.Text();
+  EXPECT_EQ(At("report/run.json")["left_out"].size(), 0u);
+  EXPECT_EQ(At("report/run.json")["units"], "metres");
+  EXPECT_EQ(At("dense/1/units.json")["units"], "metres");
 }
 
 TEST_F(ScaledReconstruction, BadTablesAreSeenBeforeTheWork) {
