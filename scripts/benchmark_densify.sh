@@ -14,10 +14,7 @@
 #   --PartialDensification.* as partial_densifier takes them
 # Run it again to resume: surveys that are complete are kept; measurements are made again.
 set -euo pipefail
-
-usage() {
-  sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}" >&2
-}
+. "$(dirname "${BASH_SOURCE[0]}")/benchmark_common.sh"
 
 called_from=$PWD
 output=
@@ -57,24 +54,8 @@ while [ $# -gt 0 ]; do
 done
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-[ -n "$output" ] || output=$PWD/benchmark_densify
-case $output in /*) ;; *) output=$called_from/$output ;; esac
-mkdir -p "$output/sets"
-
-scripts/setup.sh
-cmake --preset release >/dev/null
-cmake --build --preset release --target densify_benchmark demo_survey colmap_seapoint
-bin=$PWD/build/release/bin
-
-make_survey() {  # NAME OPTION...
-  local survey=$output/surveys/$1
-  folders+=("$survey")
-  [ ! -f "$survey/complete" ] || return 0
-  echo "Making the survey $1 ..." >&2
-  shift
-  "$bin/demo_survey" generate --output_path "$survey" --forward_overlap 0.8 --side_overlap 0.5 "$@"
-  touch "$survey/complete"
-}
+make_output benchmark_densify
+build densify_benchmark demo_survey colmap_seapoint
 
 if [ ${#folders[@]} -eq 0 ]; then
   size=(--width 1600 --height 1200)
@@ -84,16 +65,6 @@ if [ ${#folders[@]} -eq 0 ]; then
     --turbidity 0.7 --caustics 0.5 --marine_snow 0.5
   make_survey mp12 --width 4000 --height 3000 --turbidity 0.1 --num_strips 2 --images_per_strip 5
 fi
-
-# The pictures that a workspace was made from: what its own report says.
-workspace_images() {  # WORKSPACE
-  local report
-  for report in "$1"/dense/*/run.json "$1"/*.run.json; do
-    [ -f "$report" ] || continue
-    sed -n 's/^ *"image_path": "\(.*\)",\{0,1\}$/\1/p' "$report" | head -n 1
-    return
-  done
-}
 
 measure() {  # NAME SET_OPTION...
   local name=$1
@@ -109,11 +80,8 @@ measure() {  # NAME SET_OPTION...
     --output_path "$output/sets/$name.holdout.csv" >/dev/null
 }
 
-declare -A taken=()
 for folder in "${folders[@]}"; do
-  name=$(basename "$folder" | tr -c 'A-Za-z0-9._\n-' _)
-  while [ -n "${taken[$name]:-}" ]; do name=${name}_; done  # two folders of one name
-  taken[$name]=1
+  name_set "$(basename "$folder")"
   if [ -f "$folder/truth/survey.json" ]; then
     measure "$name" --survey_path "$folder"
     continue

@@ -11,10 +11,7 @@
 #   --num_repeats N          of every timing [3]
 # Run it again to resume: surveys that are complete are kept; measurements are made again.
 set -euo pipefail
-
-usage() {
-  sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}" >&2
-}
+. "$(dirname "${BASH_SOURCE[0]}")/benchmark_common.sh"
 
 called_from=$PWD
 output=
@@ -36,35 +33,9 @@ while [ $# -gt 0 ]; do
 done
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-[ -n "$output" ] || output=$PWD/benchmark_features
-case $output in /*) ;; *) output=$called_from/$output ;; esac
-mkdir -p "$output/sets"
-
-scripts/setup.sh
-if ! command -v gnuplot >/dev/null; then
-  as_root=()
-  if [ "$(id -u)" -ne 0 ]; then
-    command -v sudo >/dev/null || { echo "gnuplot-nox is missing; run this as root" >&2; exit 1; }
-    as_root=(sudo)
-  fi
-  echo "Installing: gnuplot-nox" >&2
-  "${as_root[@]}" apt-get update -qq
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-    apt-get install -y -qq --no-install-recommends gnuplot-nox >/dev/null
-fi
-cmake --preset release >/dev/null
-cmake --build --preset release --target feature_benchmark demo_survey
-bin=$PWD/build/release/bin
-
-make_survey() {  # NAME OPTION...
-  local survey=$output/surveys/$1
-  folders+=("$survey")
-  [ ! -f "$survey/complete" ] || return 0
-  echo "Making the survey $1 ..." >&2
-  shift
-  "$bin/demo_survey" generate --output_path "$survey" "$@"
-  touch "$survey/complete"
-}
+make_output benchmark_features
+build feature_benchmark demo_survey
+install_packages gnuplot-nox
 
 if [ ${#folders[@]} -eq 0 ]; then
   make_survey clear --width 1632 --height 1224 --turbidity 0.1
@@ -77,17 +48,14 @@ if [ ${#folders[@]} -eq 0 ]; then
 fi
 
 # A set is named after its folder, or the nearest one above whose name says more than "images".
-set_name() {
+telling_folder() {
   local dir=$1
   while [ "$(basename "$dir")" = images ]; do dir=$(dirname "$dir"); done
-  basename "$dir" | tr -c 'A-Za-z0-9._\n-' _
+  basename "$dir"
 }
 
-declare -A taken=()
 for folder in "${folders[@]}"; do
-  name=$(set_name "$folder")
-  while [ -n "${taken[$name]:-}" ]; do name=${name}_; done  # two folders of one name
-  taken[$name]=1
+  name_set "$(telling_folder "$folder")"
   kind=--image_path
   [ ! -f "$folder/truth/survey.json" ] || kind=--survey_path
   "$bin/feature_benchmark" measure "$kind" "$folder" ${options[@]+"${options[@]}"} \

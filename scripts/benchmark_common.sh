@@ -1,0 +1,93 @@
+# What the benchmark scripts share; they source it. No program of its own.
+
+# The comment at the head of the script that was started.
+usage() {
+  sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//p}' "$0" >&2
+}
+
+# "$output" as an absolute path; `$called_from` is where the script was started, its default the
+# folder DEFAULT in this checkout. Makes it and its sets/.
+make_output() {  # DEFAULT
+  [ -n "$output" ] || output=$PWD/$1
+  case $output in /*) ;; *) output=$called_from/$output ;; esac
+  mkdir -p "$output/sets"
+}
+
+install_packages() {  # PACKAGE...
+  local package as_root=() missing=()
+  for package in "$@"; do
+    [ "$(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
+      missing+=("$package")
+  done
+  [ ${#missing[@]} -gt 0 ] || return 0
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || { echo "${missing[*]} missing; run this as root" >&2; exit 1; }
+    as_root=(sudo)
+  fi
+  echo "Installing: ${missing[*]}" >&2
+  "${as_root[@]}" apt-get update -qq
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+}
+
+# Installs what the build needs and builds; sets $bin.
+build() {  # TARGET...
+  scripts/setup.sh
+  cmake --preset release >/dev/null
+  cmake --build --preset release --target "$@"
+  bin=$PWD/build/release/bin
+}
+
+# Adds a demo survey to $folders; made when it is not complete.
+make_survey() {  # NAME OPTION...
+  local survey=$output/surveys/$1
+  folders+=("$survey")
+  [ ! -f "$survey/complete" ] || return 0
+  echo "Making the survey $1 ..." >&2
+  shift
+  "$bin/demo_survey" generate --output_path "$survey" "$@"
+  touch "$survey/complete"
+}
+
+# Sets $name to the text as part of a file name, different from all before.
+declare -A taken=()
+name_set() {  # TEXT
+  name=$(printf '%s' "$1" | tr -c 'A-Za-z0-9._\n-' _)
+  while [ -n "${taken[$name]:-}" ]; do name=${name}_; done
+  taken[$name]=1
+}
+
+# The pictures that a workspace was made from: what its own report says.
+workspace_images() {  # WORKSPACE
+  local report
+  for report in "$1"/dense/*/run.json "$1"/*.run.json; do
+    [ -f "$report" ] || continue
+    sed -n 's/^ *"image_path": "\(.*\)",\{0,1\}$/\1/p' "$report" | head -n 1
+    return
+  done
+}
+
+# Runs a command, its output into LOG. Sets wall_s, cpu_s (user + system, children included) and
+# peak_mb (the largest process; empty without GNU time), and returns what the command returned.
+measure_command() {  # LOG COMMAND...
+  local log=$1 figures status=0
+  shift
+  figures=$(mktemp)
+  if [ -x /usr/bin/time ]; then
+    /usr/bin/time -q -o "$figures" -f '%e %U %S %M' "$@" >"$log" 2>&1 || status=$?
+  else
+    { TIMEFORMAT='%R %U %S'; time "$@" >"$log" 2>&1; } 2>"$figures" || status=$?
+  fi
+  read -r wall_s cpu_s peak_mb < <(tail -n 1 "$figures" |
+    awk '{ printf "%.2f %.2f %s\n", $1, $2 + $3, (NF > 3) ? sprintf("%.0f", $4 / 1024) : "" }')
+  rm -f "$figures"
+  return $status
+}
+
+# "Intel(R) Xeon(R) @ 2.3 GHz; 2 cores; 24 GB"; nothing that a CSV takes for a separator.
+machine_name() {
+  local model
+  model=$(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -n 1 | tr ',"' '  ' | tr -s ' ')
+  printf '%s; %s cores; %s GB' "${model:-$(uname -m)}" "$(nproc)" \
+    "$(awk '/^MemTotal/ { printf "%.0f", $2 / 1048576 }' /proc/meminfo)"
+}
