@@ -5,12 +5,17 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <nanoflann.hpp>
 
 namespace colmap_seapoint {
 namespace {
 
 constexpr size_t kMaxSamples = 200000;
+
+PointVector ToDoubles(const std::vector<Eigen::Vector3f>& points) {
+  PointVector doubles;
+  for (const Eigen::Vector3f& xyz : points) doubles.push_back(xyz.cast<double>());
+  return doubles;
+}
 
 }  // namespace
 
@@ -34,39 +39,13 @@ double MeanLayers(const PairedCloud& cloud, double cell) {
                         : static_cast<double>(entries.size()) / static_cast<double>(num_cells);
 }
 
-struct NearestPoint::Tree {
-  using Index = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Tree>, Tree,
-                                                    3, uint32_t>;
-
-  explicit Tree(const std::vector<Eigen::Vector3f>& p)
-      : points(p), index(3, *this, nanoflann::KDTreeSingleIndexAdaptorParams(16)) {
-    index.buildIndex();
-  }
-  size_t kdtree_get_point_count() const { return points.size(); }
-  float kdtree_get_pt(size_t i, size_t axis) const {
-    return points[i][static_cast<Eigen::Index>(axis)];
-  }
-  template <typename Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-
-  const std::vector<Eigen::Vector3f>& points;
-  Index index;
-};
-
-NearestPoint::NearestPoint(const std::vector<Eigen::Vector3f>& points) {
-  if (!points.empty()) tree_ = std::make_unique<Tree>(points);
-}
-
-NearestPoint::~NearestPoint() = default;
+NearestPoint::NearestPoint(const std::vector<Eigen::Vector3f>& points)
+    : points_(ToDoubles(points)), index_(points_) {}
 
 double NearestPoint::Distance(const Eigen::Vector3f& place) const {
-  if (!tree_) return std::numeric_limits<double>::infinity();
-  uint32_t idx = 0;
-  float squared = 0;
-  tree_->index.knnSearch(place.data(), 1, &idx, &squared);
-  return std::sqrt(static_cast<double>(squared));
+  double squared = kBeyond;
+  index_.Nearest(place.cast<double>(), NearestOf::kAnyPoint, &squared);
+  return std::sqrt(squared);
 }
 
 double ShareNear(const std::vector<Eigen::Vector3f>& reference,

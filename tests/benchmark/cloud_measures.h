@@ -2,8 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
 #include <vector>
+
+#include "colmap_seapoint/compare/nearest.h"
 
 namespace colmap_seapoint {
 
@@ -17,17 +18,15 @@ struct PairedCloud {
 // for the seams between pairs. NaN for an empty cloud.
 double MeanLayers(const PairedCloud& cloud, double cell);
 
-// Keeps a reference: the points must outlive it.
 class NearestPoint {
  public:
   explicit NearestPoint(const std::vector<Eigen::Vector3f>& points);
-  ~NearestPoint();
   // Infinity for an empty cloud.
   double Distance(const Eigen::Vector3f& place) const;
 
  private:
-  struct Tree;
-  std::unique_ptr<Tree> tree_;
+  PointVector points_;
+  PointIndex index_;
 };
 
 // Share of the reference's points (a sample of them, evenly spread) that have a point of the cloud
