@@ -27,8 +27,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// --matcher auto: up to this many pictures, every pair is tried.
-constexpr size_t kMaxImagesForAllPairs = 50;
 // Raise it whenever the same options give other results than before.
 constexpr char kMatchingVersion[] = "4";
 constexpr char kMapperVersion[] = "10";
@@ -298,7 +296,7 @@ void Reconstruction::ScaleModels() {
 }
 
 RunReport Reconstruction::DensifyOnce(const fs::path& model, const std::string& name,
-                                       const std::string& scaling_fingerprint) {
+                                      const std::string& scaling_fingerprint) {
   PartialDensifierOptions densifier;
   densifier.image_path = image_path_.string();
   densifier.input_path = model.string();
@@ -312,8 +310,7 @@ RunReport Reconstruction::DensifyOnce(const fs::path& model, const std::string& 
   const std::string stage = "dense_" + name;
   const std::string fingerprint =
       HashText(kDensificationVersion + mapper_fingerprint_ + name + "," + options_.rig + "," +
-               scaling_fingerprint +
-               OptionsFingerprint(OptionValues(options_.densification)));
+               scaling_fingerprint + OptionsFingerprint(OptionValues(options_.densification)));
   const fs::path output = densifier.output_path;
   auto done = state_.ReadIfDone(stage, fingerprint);
   const bool is_there =
@@ -368,66 +365,10 @@ RunReport Reconstruction::WriteReport() {
   return report_;
 }
 
-void Validate(const AutomaticReconstructorOptions& options) {
-  for (const std::string& problem :
-       {options.reader.Check(), options.extraction.Check(), options.densification.Check(),
-        CheckRig(options.rig), options.scale.Check()}) {
-    if (!problem.empty()) throw UsageError(problem);
-  }
-  if (!fs::is_directory(options.image_path)) {
-    throw Error(options.image_path, "there is no such folder", "check --image_path");
-  }
-  CheckRigFolders(options.rig, options.image_path);
-  CheckScaleTables(options.scale);
-}
-
 }  // namespace
 
-void AutomaticReconstructorOptions::Bind(OptionTable* table) {
-  table->AddRequired("image_path", &image_path, "folder of the pictures, sub-folders included");
-  table->AddRequired("workspace_path", &workspace_path,
-                     "folder for database.db, sparse/, dense/ and report/; created when missing");
-  table->Add("colmap_path", &colmap_path, "the colmap program: a path, or a name on PATH", "ours");
-  table->Add(
-      kQualityOption, &quality,
-      "what posing may cost. field: a coarse mapper, or global_mapper where this COLMAP has "
-      "it, for all that the lens adjustment mends afterwards; survey: the mapper adjusts "
-      "more often; archive: COLMAP's own adjustments, twice the SeaPoints, SIFT beside rBRIEF",
-      "ours", {"field", "survey", "archive"});
-  table->Add("matcher", &matcher,
-             "which pairs are tried; auto = all pairs of up to " +
-                 std::to_string(kMaxImagesForAllPairs) + " pictures, else sequential",
-             "ours", {"auto", "sequential", "exhaustive"});
-  table->Add("adjust_principal_point", &adjust_principal_point,
-             "after mapping, adjust every model once more with the principal point free; not with "
-             "--ImageReader.camera_params or --Mapper.ba_refine_*",
-             "ours");
-  table->Add("rig", &rig, kRigHelp, "paper 4");
-  scale.Bind(table);
-  reader.Bind(table);
-  extraction.Bind(table);
-  pairs.Bind(table);
-  matching.Bind(table);
-  densification.Bind(table);
-  run.Bind(table);
-}
-
-void AutomaticReconstructorOptions::Preset() {
-  if (quality != "archive") return;
-  extraction.min_num_features *= 2;
-  extraction.max_num_features *= 2;
-  extraction.descriptor = "sift";
-}
-
-ForeignOptions AutomaticReconstructorOptions::Foreign() {
-  return {"Mapper",
-          "handed on to colmap ('colmap mapper -h' lists them); Mapper.num_threads is 1 unless "
-          "given, since the mapper's result differs from run to run with more",
-          &mapper};
-}
-
 ExitCode RunAutomaticReconstructor(const AutomaticReconstructorOptions& options) {
-  Validate(options);
+  options.Check();
   Reconstruction reconstruction(options);
   reconstruction.ExtractFeatures();
   reconstruction.MatchFeatures();

@@ -16,6 +16,9 @@
 
 namespace colmap_seapoint {
 
+// --matcher auto: up to this many pictures, every pair is tried.
+inline constexpr size_t kMaxImagesForAllPairs = 50;
+
 struct AutomaticReconstructorOptions {
   std::string image_path;
   std::string workspace_path;
@@ -34,7 +37,11 @@ struct AutomaticReconstructorOptions {
   RunOptions run;
 
   void Bind(OptionTable* table);
+  // The SeaPoints' defaults of the quality.
   void Preset();
+  // Before any work. Throws UsageError for values that contradict each other, Error for paths that
+  // are not there.
+  void Check() const;
   ForeignOptions Foreign();
 };
 
