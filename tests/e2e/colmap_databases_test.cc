@@ -157,8 +157,8 @@ TEST_P(ColmapDatabases, AreOnlyAddedTo) {
 INSTANTIATE_TEST_SUITE_P(Versions, ColmapDatabases,
                          testing::Values("fresh_4.2.db", "with_rigs_and_frames_4.2.db",
                                          "migrated_3.8_to_4.2.db"),
-                         [](const auto& info) {
-                           std::string name = info.param;
+                         [](const auto& version) {
+                           std::string name = version.param;
                            for (char& c : name) {
                              if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
                            }
