@@ -57,7 +57,8 @@ TEST_F(DensifyResume, KilledAtManyMoments) {
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::set<std::string> whole = Names("whole");
-  ASSERT_EQ(whole, (std::set<std::string>{"fused.ply", "fused.ply.vis", "pairs.csv", "run.json"}));
+  ASSERT_EQ(whole, (std::set<std::string>{"fused.ply", "fused.ply.vis", "pairs.csv", "run.json",
+                                          "units.json"}));
   const auto expected = Clouds("whole");
   constexpr int kNumKills = 8;
   int num_killed = 0, num_half_way = 0;

@@ -113,8 +113,8 @@ TEST_F(WriteMaps, SameFilesForAnyThreadsAndTheSameCloud) {
   EXPECT_TRUE(ReadBytes(folder_ / "without" / "fused.ply") == files.at("fused.ply"));
 
   std::set<std::string> expected = {
-      "fused.ply",           "fused.ply.vis",     "sparse/cameras.bin",    "sparse/images.bin",
-      "sparse/points3D.bin", "stereo/fusion.cfg", "stereo/patch-match.cfg"};
+      "fused.ply",           "fused.ply.vis",     "sparse/cameras.bin",     "sparse/images.bin",
+      "sparse/points3D.bin", "stereo/fusion.cfg", "stereo/patch-match.cfg", "units.json"};
   for (const PosedImage& image : model_.images) {
     expected.insert("images/" + image.name);
     expected.insert("stereo/depth_maps/" + image.name + ".geometric.bin");

@@ -19,7 +19,9 @@ class ModelPicturesTest : public testing::Test {
     }
     database.WriteMatches(ids_["a"], ids_["b"], {{1, 2}, {3, 4}, {5, 6}},
                           MakeGeometry({{1, 2}, {5, 6}}));
-    database.WriteMatches(ids_["a"], ids_["c"], {{7, 8}}, TwoViewGeometry());
+    TwoViewGeometry failed;  // as our matchers say it
+    failed.config = TwoViewConfig::kDegenerate;
+    database.WriteMatches(ids_["a"], ids_["c"], {{7, 8}}, failed);
     database.WriteMatches(ids_["b"], ids_["c"], {{0, 8}, {2, 1}}, TwoViewGeometry());
     Execute(path_,
             "DELETE FROM two_view_geometries WHERE pair_id = (SELECT pair_id FROM matches "
