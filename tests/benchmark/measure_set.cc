@@ -22,7 +22,7 @@ constexpr size_t kMaxSamples = 5;
 
 using Detectors = std::vector<std::unique_ptr<FeatureDetector>>;
 
-struct Picture {
+struct MeasuredPicture {
   std::string name;
   Camera camera;  // an uncalibrated guess
   CellGrid grid;
@@ -31,10 +31,10 @@ struct Picture {
   std::vector<double> extract_cpu;         // by detector
 };
 
-Picture MeasurePicture(const MeasureOptions& options, const std::string& name,
-                       const Detectors& detectors) {
+MeasuredPicture MeasurePicture(const MeasureOptions& options, const std::string& name,
+                               const Detectors& detectors) {
   const GrayImage grey = ReadGrayImage(options.image_path / name);
-  Picture picture;
+  MeasuredPicture picture;
   picture.name = name;
   picture.camera = MakeCamera(CameraModel::kSimpleRadial, 1.2 * std::max(grey.width, grey.height),
                               grey.width, grey.height);
@@ -52,9 +52,9 @@ Picture MeasurePicture(const MeasureOptions& options, const std::string& name,
   return picture;
 }
 
-void AddTruth(const SurveyOracle& oracle, const Picture& picture1, const Picture& picture2,
-              const std::vector<uint8_t>& shared, const InfluenceMask& mask, size_t d,
-              const FeatureMatches& matches, FeatureRow* row) {
+void AddTruth(const SurveyOracle& oracle, const MeasuredPicture& picture1,
+              const MeasuredPicture& picture2, const std::vector<uint8_t>& shared,
+              const InfluenceMask& mask, size_t d, const FeatureMatches& matches, FeatureRow* row) {
   const size_t image1 = oracle.ImageIdx(picture1.name), image2 = oracle.ImageIdx(picture2.name);
   const auto& points1 = picture1.features[d].Points();
   const auto& points2 = picture2.features[d].Points();
@@ -68,8 +68,8 @@ void AddTruth(const SurveyOracle& oracle, const Picture& picture1, const Picture
   row->area_precision = score.precision;
 }
 
-FeatureRow MakeRow(const FeatureDetector& detector, const Picture& picture1,
-                   const Picture& picture2, size_t d, const FeatureMatches& matches,
+FeatureRow MakeRow(const FeatureDetector& detector, const MeasuredPicture& picture1,
+                   const MeasuredPicture& picture2, size_t d, const FeatureMatches& matches,
                    const InfluenceMask& mask) {
   const auto& points1 = picture1.features[d].Points();
   const auto& points2 = picture2.features[d].Points();
@@ -94,8 +94,8 @@ FeatureRow MakeRow(const FeatureDetector& detector, const Picture& picture1,
 }
 
 void MeasurePair(const MeasureOptions& options, const Detectors& detectors,
-                 const SurveyOracle* oracle, const Picture& picture1, const Picture& picture2,
-                 int gap, std::vector<FeatureRow>* rows) {
+                 const SurveyOracle* oracle, const MeasuredPicture& picture1,
+                 const MeasuredPicture& picture2, int gap, std::vector<FeatureRow>* rows) {
   std::vector<FeatureMatches> matches(detectors.size());
   std::vector<std::vector<double>> seconds(detectors.size());
   for (int repeat = 0; repeat < options.num_repeats; ++repeat) {
@@ -146,7 +146,7 @@ std::vector<FeatureRow> MeasureSet(const MeasureOptions& options) {
     for (const std::string& name : names) oracle->ImageIdx(name);  // or throws
   }
   std::vector<FeatureRow> rows;
-  std::vector<Picture> pictures;  // the last three: what a pair can need
+  std::vector<MeasuredPicture> pictures;  // the last three: what a pair can need
   for (size_t i = 0; i < names.size(); ++i) {
     std::fprintf(stderr, "\r%s: picture %zu of %zu", options.set_name.c_str(), i + 1, names.size());
     pictures.push_back(MeasurePicture(options, names[i], detectors));
