@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/median.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/commands/run_options.h"
 #include "colmap_seapoint/georeference/triangulate_target.h"
@@ -26,18 +27,12 @@ constexpr double kOriginStepDeg = 1e-5;
 constexpr double kMinMeanAxis = 0.5;
 constexpr char kPositionsOption[] = "--positions_path";
 
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 Eigen::Vector3d MedianOf(const std::map<std::string, Eigen::Vector3d>& positions) {
   Eigen::Vector3d median;
   for (int i = 0; i < 3; ++i) {
     std::vector<double> values;
     for (const auto& [name, position] : positions) values.push_back(position[i]);
-    median[i] = Median(values);
+    median[i] = UpperMedian(values);
   }
   return median;
 }
@@ -248,13 +243,13 @@ void AddRig(const SparseModel& model, const ScaleSources& sources, const StereoR
     throw Error("--rig_spacing", "the model holds no two pictures that a rig took at once",
                 "give --rig LEFT,RIGHT and --image_path, or a model with frames");
   }
-  const double median = Median(spacings);
+  const double median = UpperMedian(spacings);
   std::vector<double> deviations;
   for (const double spacing : spacings) deviations.push_back(std::abs(spacing - median));
   LengthMeasurement length;
   length.in_model = median;
   length.in_model_sigma =
-      1.2533 * 1.4826 * Median(deviations) / std::sqrt(static_cast<double>(spacings.size()));
+      1.2533 * 1.4826 * UpperMedian(deviations) / std::sqrt(static_cast<double>(spacings.size()));
   length.metres = sources.rig_spacing;
   length.sigma = sources.length_sigma;
   result->problem.lengths.push_back(length);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "colmap_seapoint/base/median.h"
 #include "colmap_seapoint/georeference/similarity_solver.h"
 
 namespace colmap_seapoint {
@@ -24,12 +25,6 @@ constexpr double kMinLevellingSine = 0.2;
 constexpr int kMaxRounds = 10;
 // Positions nearer to a line than this share of their extent say nothing of the turn about it.
 constexpr double kLine = 1e-3;
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // The one length's scale that the others like best.
 double ConsensusScale(const std::vector<LengthMeasurement>& lengths) {
@@ -76,7 +71,7 @@ double LengthFactor(const std::vector<LengthMeasurement>& lengths, double scale)
     residuals.push_back(std::abs(scale * length.in_model - length.metres) /
                         LengthSigma(length, scale));
   }
-  return std::max(1.0, 1.4826 * Median(residuals));
+  return std::max(1.0, 1.4826 * UpperMedian(residuals));
 }
 
 // Scale alone: the weighted mean, with the outliers chosen anew each time.

@@ -36,16 +36,17 @@ Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& m) {
   return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
 }
 
-Similarity AlignByAttitudes(const std::vector<PosePair>& pairs, const Eigen::Matrix3Xd& from,
-                            const Eigen::Matrix3Xd& to) {
+Similarity3d AlignByAttitudes(const std::vector<PosePair>& pairs, const Eigen::Matrix3Xd& from,
+                              const Eigen::Matrix3Xd& to) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (const PosePair& pair : pairs) {
     sum += (pair.truth.rotation.conjugate() * pair.model.rotation).toRotationMatrix();
   }
-  Similarity similarity;
+  Similarity3d similarity;
   similarity.rotation = NearestRotation(sum);
   const Eigen::Vector3d from_mean = from.rowwise().mean(), to_mean = to.rowwise().mean();
-  const Eigen::Matrix3Xd turned = similarity.rotation * (from.colwise() - from_mean);
+  const Eigen::Matrix3Xd turned =
+      similarity.rotation.toRotationMatrix() * (from.colwise() - from_mean);
   similarity.scale = turned.cwiseProduct(to.colwise() - to_mean).sum() / turned.squaredNorm();
   similarity.translation = to_mean - similarity.scale * (similarity.rotation * from_mean);
   return similarity;
@@ -86,7 +87,8 @@ CentreAlignment AlignCentres(const SparseModel& truth, const SparseModel& model,
     } else {
       const Eigen::Matrix4d m = Eigen::umeyama(from, to, true);
       result.truth_from_model.scale = m.block<3, 1>(0, 0).norm();
-      result.truth_from_model.rotation = m.block<3, 3>(0, 0) / result.truth_from_model.scale;
+      result.truth_from_model.rotation =
+          Eigen::Matrix3d(m.block<3, 3>(0, 0) / result.truth_from_model.scale);
       result.truth_from_model.translation = m.block<3, 1>(0, 3);
     }
   }
@@ -99,12 +101,12 @@ CentreAlignment AlignCentres(const SparseModel& truth, const SparseModel& model,
   return result;
 }
 
-Similarity RefineOnSurface(const HeightField& surface, const std::vector<Eigen::Vector3f>& points,
-                           const Similarity& start, double reach) {
+Similarity3d RefineOnSurface(const HeightField& surface, const std::vector<Eigen::Vector3f>& points,
+                             const Similarity3d& start, double reach) {
   constexpr size_t kMaxPoints = 20000;
   constexpr int kIterations = 15;
   const size_t stride = std::max<size_t>(1, points.size() / kMaxPoints);
-  Similarity similarity = start;
+  Similarity3d similarity = start;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     // Unknowns: rotation vector, translation, relative scale, about the mean of the points.
     Eigen::Matrix<double, 7, 7> normal_matrix = Eigen::Matrix<double, 7, 7>::Identity() * 1e-9;
@@ -123,13 +125,14 @@ Similarity RefineOnSurface(const HeightField& surface, const std::vector<Eigen::
     }
     const Eigen::Matrix<double, 7, 1> step = normal_matrix.ldlt().solve(right);
     const double angle = step.head<3>().norm();
-    Similarity delta;
+    Similarity3d delta;
     if (angle > 1e-15) {
-      delta.rotation = Eigen::AngleAxisd(angle, step.head<3>() / angle).toRotationMatrix();
+      delta.rotation = Eigen::AngleAxisd(angle, step.head<3>() / angle);
     }
     delta.scale = 1 + step(6);
     delta.translation = pivot + step.segment<3>(3) - delta.scale * (delta.rotation * pivot);
-    similarity = {delta.scale * similarity.scale, delta.rotation * similarity.rotation,
+    similarity = {delta.scale * similarity.scale,
+                  (delta.rotation * similarity.rotation).normalized(),
                   delta * similarity.translation};
   }
   return similarity;

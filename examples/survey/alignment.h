@@ -4,23 +4,14 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "colmap_seapoint/base/similarity3.h"
 #include "colmap_seapoint/base/sparse_model.h"
 #include "examples/survey/height_field.h"
 
 namespace colmap_seapoint {
 
-struct Similarity {
-  double scale = 1;
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
-
-  Eigen::Vector3d operator*(const Eigen::Vector3d& x) const {
-    return scale * (rotation * x) + translation;
-  }
-};
-
 struct CentreAlignment {
-  Similarity truth_from_model;
+  Similarity3d truth_from_model;
   int num_registered = 0;
   double rms = 0, max = 0;  // of what is left between the centres, metres
 };
@@ -33,7 +24,7 @@ CentreAlignment AlignCentres(const SparseModel& truth, const SparseModel& model,
 
 // Moves on from `start` by point-to-plane iterations of the points (model's frame; a subset is
 // used) onto the surface; points farther than `reach` metres do not pull.
-Similarity RefineOnSurface(const HeightField& surface, const std::vector<Eigen::Vector3f>& points,
-                           const Similarity& start, double reach);
+Similarity3d RefineOnSurface(const HeightField& surface, const std::vector<Eigen::Vector3f>& points,
+                             const Similarity3d& start, double reach);
 
 }  // namespace colmap_seapoint

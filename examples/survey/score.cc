@@ -197,7 +197,7 @@ SurveyScore ScoreSurvey(const SurveyTruth& truth, const SparseModel& model,
   score.num_registered = alignment.num_registered;
   score.centre_rms = alignment.rms;
   score.centre_max = alignment.max;
-  Similarity truth_from_model = alignment.truth_from_model;
+  Similarity3d truth_from_model = alignment.truth_from_model;
   if (options.refine) {
     truth_from_model = RefineOnSurface(truth.surface, points, truth_from_model, 40 * truth.gsd);
   }
