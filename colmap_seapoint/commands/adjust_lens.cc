@@ -66,9 +66,7 @@ std::string Adjust(bool frees_principal_point, double max_focal_ratio, const fs:
   if (!AdjustBundle(options, &after)) return "the adjustment failed";
   const std::string fault = Fault(before, after, max_focal_ratio);
   if (!fault.empty()) return fault;
-  // By id, as newer versions number them; then fused.ply.vis is right for every version.
-  std::sort(after.images.begin(), after.images.end(),
-            [](const auto& a, const auto& b) { return a.image_id < b.image_id; });
+  SortImagesById(&after);
   WriteSparseModelBinary(model, after);
   return fault;
 }

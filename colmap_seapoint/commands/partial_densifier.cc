@@ -41,11 +41,7 @@ void Validate(const PartialDensifierOptions& options) {
 SparseModel ReadModel(const PartialDensifierOptions& options,
                       ModelContent content = ModelContent::kPosesAndPoints) {
   SparseModel model = ReadSparseModel(options.input_path, content);
-  if (options.densification.write_maps) {
-    std::sort(model.images.begin(), model.images.end(), [](const auto& a, const auto& b) {
-      return a.image_id < b.image_id;
-    });
-  }
+  if (options.densification.write_maps) SortImagesById(&model);
   for (const auto& [id, camera] : model.cameras) {
     if (camera.model != CameraModel::kEquirectangular) continue;
     throw Error(options.input_path,

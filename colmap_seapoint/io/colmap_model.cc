@@ -208,4 +208,9 @@ SparseModel ReadSparseModel(const std::filesystem::path& dir, ModelContent conte
   return std::move(read.model);
 }
 
+void SortImagesById(SparseModel* model) {
+  std::sort(model->images.begin(), model->images.end(),
+            [](const PosedImage& a, const PosedImage& b) { return a.image_id < b.image_id; });
+}
+
 }  // namespace colmap_seapoint

@@ -43,4 +43,8 @@ bool IsSparseModel(const std::filesystem::path& dir);
 void WriteSparseModelText(const std::filesystem::path& dir, const SparseModel& model);
 void WriteSparseModelBinary(const std::filesystem::path& dir, const SparseModel& model);
 
+// fused.ply.vis counts pictures by their place in images.bin (COLMAP 3.8) or by the order of their
+// ids (later versions): in a model so sorted both are the same.
+void SortImagesById(SparseModel* model);
+
 }  // namespace colmap_seapoint
