@@ -5,11 +5,11 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/timer.h"
-#include "densify/consistency.h"
-#include "densify/disparity_to_cloud.h"
-#include "densify/rectification.h"
-#include "densify/refinement.h"
-#include "densify/surface_fit.h"
+#include "densify/cloud/disparity_to_cloud.h"
+#include "densify/match/consistency.h"
+#include "densify/match/rectification.h"
+#include "densify/match/refinement.h"
+#include "densify/match/surface_fit.h"
 
 namespace colmap_seapoint {
 

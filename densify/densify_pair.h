@@ -8,10 +8,10 @@
 #include "colmap_seapoint/base/camera.h"
 #include "colmap_seapoint/base/picture.h"
 #include "colmap_seapoint/base/rigid3.h"
-#include "densify/coverage.h"
-#include "densify/partial_cloud.h"
+#include "densify/cloud/partial_cloud.h"
+#include "densify/match/propagation.h"
+#include "densify/overlap/coverage.h"
 #include "densify/partial_densification_options.h"
-#include "densify/propagation.h"
 
 namespace colmap_seapoint {
 

@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "colmap_seapoint/base/natural_order.h"
-#include "densify/sequence_state.h"
+#include "densify/sequence/sequence_state.h"
 
 namespace colmap_seapoint {
 

@@ -10,9 +10,9 @@
 #include "colmap_seapoint/base/features.h"
 #include "colmap_seapoint/base/picture.h"
 #include "colmap_seapoint/base/sparse_model.h"
-#include "densify/partial_cloud.h"
+#include "colmap_seapoint/base/stereo_rig.h"
+#include "densify/cloud/partial_cloud.h"
 #include "densify/partial_densification_options.h"
-#include "densify/stereo_rig.h"
 
 namespace colmap_seapoint {
 

@@ -9,10 +9,10 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/timer.h"
-#include "colmap_seapoint/io/atomic_file.h"
-#include "colmap_seapoint/io/colmap_model.h"
-#include "colmap_seapoint/io/image_file.h"
-#include "colmap_seapoint/io/ply.h"
+#include "colmap_seapoint/io/cloud/ply.h"
+#include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/image/image_file.h"
 #include "examples/subcommands.h"
 #include "examples/survey/control.h"
 #include "examples/survey/score.h"
@@ -91,7 +91,8 @@ int Control(const std::vector<std::string>& arguments) {
   add("pixel_noise", Default(&o.pixel_noise), "standard deviation of the targets' marks, pixels");
   add("position_noise", Default(&o.position_noise),
       "standard deviation of the cameras' positions, each axis, metres");
-  add("outlier_share", Default(&o.outlier_share), "share of positions that are grossly wrong, 0..1");
+  add("outlier_share", Default(&o.outlier_share),
+      "share of positions that are grossly wrong, 0..1");
   add("outlier_size", Default(&o.outlier_size), "how far these are off, metres");
   if (!ParseOptions(description, arguments)) return 0;
   const std::string problem = CheckControlOptions(o);

@@ -8,8 +8,8 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/compare/plan_view.h"
-#include "colmap_seapoint/io/image_file.h"
-#include "colmap_seapoint/io/ply.h"
+#include "colmap_seapoint/io/cloud/ply.h"
+#include "colmap_seapoint/io/image/image_file.h"
 
 namespace colmap_seapoint {
 namespace {

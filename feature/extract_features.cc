@@ -4,8 +4,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "feature/rbrief_descriptor.h"
-#include "feature/sift_descriptor.h"
+#include "feature/descriptor/rbrief_descriptor.h"
+#include "feature/descriptor/sift_descriptor.h"
 
 namespace colmap_seapoint {
 

@@ -5,7 +5,7 @@
 #include "colmap_seapoint/base/features.h"
 #include "colmap_seapoint/base/image.h"
 #include "colmap_seapoint/base/options.h"
-#include "feature/seapoint_detector.h"
+#include "feature/detector/seapoint_detector.h"
 
 namespace colmap_seapoint {
 

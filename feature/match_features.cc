@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "feature/picture_turn.h"
-#include "feature/rbrief_descriptor.h"
-#include "feature/rbrief_pattern.h"
-#include "feature/sift_descriptor.h"
+#include "feature/descriptor/rbrief_descriptor.h"
+#include "feature/descriptor/rbrief_pattern.h"
+#include "feature/descriptor/sift_descriptor.h"
+#include "feature/matching/picture_turn.h"
 
 namespace colmap_seapoint {
 

@@ -8,11 +8,11 @@
 #include "colmap_seapoint/base/camera.h"
 #include "colmap_seapoint/base/features.h"
 #include "colmap_seapoint/base/options.h"
-#include "feature/flow_filter.h"
-#include "feature/guided_matcher.h"
-#include "feature/hamming_matcher.h"
-#include "feature/sift_matcher.h"
-#include "feature/two_view_verification.h"
+#include "feature/matching/flow_filter.h"
+#include "feature/matching/guided_matcher.h"
+#include "feature/matching/hamming_matcher.h"
+#include "feature/matching/sift_matcher.h"
+#include "feature/matching/two_view_verification.h"
 
 namespace colmap_seapoint {
 

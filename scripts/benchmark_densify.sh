@@ -102,7 +102,7 @@ cat "$output/densify.md"
 echo
 echo "table: $output/densify.md   rows: $output/densify.csv"
 if command -v gnuplot >/dev/null; then
-  (cd "$output" && gnuplot "$OLDPWD/tests/benchmark/densify_plots.gp")
+  (cd "$output" && gnuplot "$OLDPWD/scripts/plots/densify_plots.gp")
   echo "plots: $output/densify_cpu.png $output/densify_cover.png"
 else
   echo "no plots: gnuplot is missing (apt-get install gnuplot-nox)"

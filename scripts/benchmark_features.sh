@@ -62,7 +62,7 @@ for folder in "${folders[@]}"; do
     --output_path "$output/sets/$name.csv"
 done
 "$bin/feature_benchmark" tables --input_path "$output/sets" --output_path "$output"
-(cd "$output" && gnuplot "$OLDPWD/tests/benchmark/feature_plots.gp")
+(cd "$output" && gnuplot "$OLDPWD/scripts/plots/feature_plots.gp")
 
 cat "$output/features.md"
 echo

@@ -216,9 +216,9 @@ for folder in "${folders[@]}"; do
   done
 done
 
-awk -v output="$output" -f tests/benchmark/mvs_tables.awk "$output"/sets/*/rows.csv
+awk -v output="$output" -f scripts/plots/mvs_tables.awk "$output"/sets/*/rows.csv
 cat "$output/mvs.md"
 echo
 echo "table: $output/mvs.md   rows: $output/mvs.csv $output/pairs.csv"
-(cd "$output" && gnuplot "$OLDPWD/tests/benchmark/mvs_plots.gp")
+(cd "$output" && gnuplot "$OLDPWD/scripts/plots/mvs_plots.gp")
 echo "plots: $output/mvs_cpu.png $output/mvs_f_score.png"

@@ -28,8 +28,8 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-#define SEAPOINT_CHECK(condition)                                                              \
-  ((condition) ? static_cast<void>(0)                                                          \
+#define SEAPOINT_CHECK(condition)                                                                \
+  ((condition) ? static_cast<void>(0)                                                            \
                : throw std::logic_error(std::string("internal check failed: " #condition " (") + \
                                         __FILE__ + ":" + std::to_string(__LINE__) + ")"))
 

@@ -15,8 +15,9 @@ namespace colmap_seapoint {
 struct SeaPoint {
   float x = 0;
   float y = 0;
-  float scale = 1;        // pixels of the full-size picture per pixel of the level it was found on
-  float orientation = 0;  // radians, of the intensity centroid, 0 = to the right, positive downwards
+  float scale = 1;  // pixels of the full-size picture per pixel of the level it was found on
+  float orientation =
+      0;  // radians, of the intensity centroid, 0 = to the right, positive downwards
 };
 
 // rBRIEF, 256 tests; bit i of the descriptor is bit i % 8 of byte i / 8.
@@ -58,9 +59,9 @@ enum class TwoViewConfig : int {
 struct TwoViewGeometry {
   TwoViewConfig config = TwoViewConfig::kUndefined;
   FeatureMatches inliers;
-  std::optional<Eigen::Matrix3d> F;  // x2' F x1 = 0, pixels
-  std::optional<Eigen::Matrix3d> E;  // normalised coordinates
-  std::optional<Eigen::Matrix3d> H;  // x2 = H x1, pixels
+  std::optional<Eigen::Matrix3d> F;       // x2' F x1 = 0, pixels
+  std::optional<Eigen::Matrix3d> E;       // normalised coordinates
+  std::optional<Eigen::Matrix3d> H;       // x2 = H x1, pixels
   std::optional<Rigid3d> cam2_from_cam1;  // unit translation (or zero: panoramic)
 };
 

@@ -18,7 +18,9 @@ struct Image {
 
   Image() = default;
   Image(int w, int h, int c = 1, T value = T())
-      : width(w), height(h), channels(c),
+      : width(w),
+        height(h),
+        channels(c),
         data(static_cast<size_t>(w) * static_cast<size_t>(h) * static_cast<size_t>(c), value) {}
 
   bool Empty() const { return data.empty(); }

@@ -176,4 +176,12 @@ std::string OptionValueText(const OptionTarget& target) {
       target);
 }
 
+OptionList OptionValues(const OptionTable& table) {
+  OptionList values;
+  for (const OptionInfo& option : table.Options()) {
+    values.emplace_back(option.name, OptionValueText(option.target));
+  }
+  return values;
+}
+
 }  // namespace colmap_seapoint

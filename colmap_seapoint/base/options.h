@@ -2,7 +2,9 @@
 // Parsing, `-h`, the range check, run.json and the README's table are all made from it.
 #pragma once
 
+#include <map>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -13,12 +15,12 @@ using OptionTarget = std::variant<bool*, int*, double*, std::string*>;
 struct OptionInfo {
   std::string name;  // "SeaPointExtraction.min_num_features"
   OptionTarget target;
-  std::string help;    // one line, with the unit
-  std::string origin;  // "paper 2.3", "ours", "COLMAP"
-  double min = 0, max = 0;            // legal range, both inclusive; of int and double only
-  std::vector<std::string> choices;   // legal values, of strings only; empty = any
+  std::string help;                  // one line, with the unit
+  std::string origin;                // "paper 2.3", "ours", "COLMAP"
+  double min = 0, max = 0;           // legal range, both inclusive; of int and double only
+  std::vector<std::string> choices;  // legal values, of strings only; empty = any
   bool required = false;
-  std::string default_value;          // text, taken when the option was added
+  std::string default_value;  // text, taken when the option was added
 };
 
 class OptionTable {
@@ -47,5 +49,27 @@ class OptionTable {
 
 // The value as text, as it would be typed on the command line.
 std::string OptionValueText(const OptionTarget& target);
+
+using OptionList = std::vector<std::pair<std::string, std::string>>;  // name, value as text
+
+OptionList OptionValues(const OptionTable& table);
+
+// Name and value of everything that `options` binds. By value: Bind() wants an object to change.
+template <typename Options>
+OptionList OptionValues(Options options) {
+  OptionTable table;
+  options.Bind(&table);
+  return OptionValues(table);
+}
+
+// Options of a group that are not ours: kept as typed, for another program.
+struct ForeignOptions {
+  std::string group;  // "Mapper"; empty = none are taken
+  std::string help;
+  std::map<std::string, std::string>* values = nullptr;  // "Mapper.min_model_size" -> "5"
+};
+
+// The option that presets others.
+inline constexpr char kQualityOption[] = "quality";
 
 }  // namespace colmap_seapoint

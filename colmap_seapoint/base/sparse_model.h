@@ -22,8 +22,8 @@ struct PosedImage {
   uint32_t camera_id = 0;
   std::string name;  // relative to the image folder, '/' between folders
   Rigid3d cam_from_world;
-  std::vector<Eigen::Vector2d> points2D;   // pixels
-  std::vector<uint64_t> point3D_ids;       // same length; kNoPoint3D where none
+  std::vector<Eigen::Vector2d> points2D;  // pixels
+  std::vector<uint64_t> point3D_ids;      // same length; kNoPoint3D where none
 };
 
 struct SparsePoint {

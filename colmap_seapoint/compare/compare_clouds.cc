@@ -11,7 +11,7 @@
 #include "colmap_seapoint/compare/nearest.h"
 #include "colmap_seapoint/compare/order_statistic.h"
 #include "colmap_seapoint/compare/reduced_cloud.h"
-#include "colmap_seapoint/io/ply_reader.h"
+#include "colmap_seapoint/io/cloud/ply_reader.h"
 
 namespace colmap_seapoint {
 namespace {

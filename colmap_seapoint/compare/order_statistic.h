@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "colmap_seapoint/io/tile_store.h"
+#include "colmap_seapoint/io/cloud/tile_store.h"
 
 namespace colmap_seapoint {
 

@@ -1,7 +1,7 @@
 #include "colmap_seapoint/compare/point_tiles.h"
 
 #include "colmap_seapoint/base/error.h"
-#include "colmap_seapoint/io/ply_reader.h"
+#include "colmap_seapoint/io/cloud/ply_reader.h"
 
 namespace colmap_seapoint {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "colmap_seapoint/compare/plan_view.h"
 #include "colmap_seapoint/compare/tile_partition.h"
-#include "colmap_seapoint/io/tile_store.h"
+#include "colmap_seapoint/io/cloud/tile_store.h"
 
 namespace colmap_seapoint {
 

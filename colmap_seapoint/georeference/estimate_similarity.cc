@@ -48,7 +48,8 @@ void Choose(const Similarity3d& similarity, State* state) {
   const auto& positions = state->problem.positions;
   for (size_t i = 0; i < positions.size() && state->has_positions; ++i) {
     const double residual = NormalisedResidual(positions[i], similarity) / state->position_factor;
-    state->position_used[i] = positions.size() < kMinPositionsForOutliers || residual <= kMaxPositionResidual;
+    state->position_used[i] =
+        positions.size() < kMinPositionsForOutliers || residual <= kMaxPositionResidual;
   }
   const auto& lengths = state->problem.lengths;
   for (size_t i = 0; i < lengths.size(); ++i) {
@@ -177,8 +178,7 @@ std::optional<Solution> SolveLevelled(State* state, double known_factor) {
   if (!consensus) return std::nullopt;
   state->across = AcrossLine(problem, consensus->metric_from_model);
   if (!state->across) return std::nullopt;
-  state->position_factor =
-      known_factor > 0 ? known_factor : consensus->sigma_factor;
+  state->position_factor = known_factor > 0 ? known_factor : consensus->sigma_factor;
   return SolveAll(*consensus, state);
 }
 
@@ -193,8 +193,8 @@ Solution SolveWithPositions(State* state, SimilarityEstimate* estimate) {
   const auto consensus = FindPositionConsensus(problem.positions, std::nullopt, problem.seed);
   std::optional<Solution> solution;
   if (consensus && slenderness > kLine) {
-    state->position_factor = HasSigmas(problem) ? std::max(1.0, consensus->sigma_factor)
-                                                : consensus->sigma_factor;
+    state->position_factor =
+        HasSigmas(problem) ? std::max(1.0, consensus->sigma_factor) : consensus->sigma_factor;
     solution = SolveAll(*consensus, state);
   }
   if (!solution || solution->rotation_sigma_deg > kMaxTurnSigmaDeg) {
@@ -265,9 +265,8 @@ void FillWarnings(const State& state, SimilarityEstimate* estimate) {
                                  " their sigmas: these are taken so much larger");
   }
   for (size_t i = 0; i < problem.lengths.size(); ++i) {
-    if (!state.length_used[i] ||
-        std::abs(estimate->length_residuals[i]) <=
-            kMaxLengthResidual * estimate->length_sigmas[i]) {
+    if (!state.length_used[i] || std::abs(estimate->length_residuals[i]) <=
+                                     kMaxLengthResidual * estimate->length_sigmas[i]) {
       continue;
     }
     estimate->warnings.push_back(

@@ -34,9 +34,9 @@ inline constexpr double kMaxPositionResidual = 3.7;
 
 // Least median (rather: quantile of h = n/2 + 2) of residuals over minimal samples, all of them
 // where that is cheap, else 3000 drawn with `seed`; then least squares over those within
-// kMaxPositionResidual of the scatter. Fewer than 5 positions cannot say which of them is wrong: all
-// count. With `down_in_model`, the positions lie on a line, about which any turn is possible: samples
-// are of two, and of all turns the one is taken that brings `down_in_model` nearest to -z.
+// kMaxPositionResidual of the scatter. Fewer than 5 positions cannot say which of them is wrong:
+// all count. With `down_in_model`, the positions lie on a line, about which any turn is possible:
+// samples are of two, and of all turns the one is taken that brings `down_in_model` nearest to -z.
 // nullopt when no sample gives a similarity (all positions in one place). Needs 3 positions; 2 with
 // `down_in_model`. O(3000 n).
 std::optional<PositionConsensus> FindPositionConsensus(

@@ -78,14 +78,14 @@ struct LevellingResidual {
     const T from[3] = {T(down.x()), T(down.y()), T(down.z())};
     T turned[3];
     ceres::AngleAxisRotatePoint(x + 1, from, turned);
-    residual[0] =
-        (turned[0] * across.x() + turned[1] * across.y() + turned[2] * across.z()) / kLevellingSigma;
+    residual[0] = (turned[0] * across.x() + turned[1] * across.y() + turned[2] * across.z()) /
+                  kLevellingSigma;
     return true;
   }
 };
 
-void AddResiduals(const EstimationState& state, const Linearisation& at, bool is_robust, Unknowns* x,
-                  ceres::Problem* problem) {
+void AddResiduals(const EstimationState& state, const Linearisation& at, bool is_robust,
+                  Unknowns* x, ceres::Problem* problem) {
   const auto loss = [&](double width) -> ceres::LossFunction* {
     return is_robust ? new ceres::CauchyLoss(width) : nullptr;
   };
@@ -111,8 +111,8 @@ void AddResiduals(const EstimationState& state, const Linearisation& at, bool is
   }
   if (state.across) {
     problem->AddResidualBlock(
-        new ceres::AutoDiffCostFunction<LevellingResidual, 1, 7>(new LevellingResidual{
-            start.rotation * state.problem.down_in_model, *state.across}),
+        new ceres::AutoDiffCostFunction<LevellingResidual, 1, 7>(
+            new LevellingResidual{start.rotation * state.problem.down_in_model, *state.across}),
         nullptr, x->data());
   }
 }
@@ -124,8 +124,8 @@ void AddCovariance(ceres::Problem* problem, SimilaritySolution* solution) {
   Eigen::Matrix<double, 7, 7> normal = Eigen::Matrix<double, 7, 7>::Zero();
   for (int row = 0; row < sparse.num_rows; ++row) {
     Eigen::Matrix<double, 7, 1> values = Eigen::Matrix<double, 7, 1>::Zero();
-    for (int k = sparse.rows[static_cast<size_t>(row)]; k < sparse.rows[static_cast<size_t>(row) + 1];
-         ++k) {
+    for (int k = sparse.rows[static_cast<size_t>(row)];
+         k < sparse.rows[static_cast<size_t>(row) + 1]; ++k) {
       values[sparse.cols[static_cast<size_t>(k)]] = sparse.values[static_cast<size_t>(k)];
     }
     normal += values * values.transpose();
@@ -173,7 +173,8 @@ Eigen::Vector3d PivotOf(const EstimationState& state) {
   return count > 0 ? Eigen::Vector3d(sum / count) : sum;
 }
 
-SimilaritySolution SolveSimilarity(const EstimationState& state, const Similarity3d& start, bool is_robust) {
+SimilaritySolution SolveSimilarity(const EstimationState& state, const Similarity3d& start,
+                                   bool is_robust) {
   const Linearisation at{start, PivotOf(state)};
   Unknowns x{};
   ceres::Problem problem;

@@ -18,7 +18,7 @@ struct TargetView {
 };
 
 struct TriangulatedTarget {
-  std::string problem;  // why it has no place; empty: it has one
+  std::string problem;                            // why it has no place; empty: it has one
   Eigen::Vector3d xyz = Eigen::Vector3d::Zero();  // model's frame
   // Of xyz, model units squared, for marks that are 1 pixel off (the cameras taken as exact).
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();

@@ -33,8 +33,8 @@ std::string Format(const char* format, Values... values) {
 std::array<Eigen::Vector3d, 2> BarEnds(const SurveyTruth& truth, double length) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const PosedImage& image : truth.model.images) {
-    middle += image.cam_from_world.OriginInSource() /
-              static_cast<double>(truth.model.images.size());
+    middle +=
+        image.cam_from_world.OriginInSource() / static_cast<double>(truth.model.images.size());
   }
   std::array<Eigen::Vector3d, 2> ends;
   for (size_t i = 0; i < 2; ++i) {
@@ -62,9 +62,10 @@ std::string TargetRows(const SurveyTruth& truth, const ControlOptions& options,
     ++num_marks;
   }
   if (num_marks >= 2) return rows;
-  throw Error("the survey", "no two of its pictures see the end of a bar at " +
-                                Format("%.2f, %.2f", end.x(), end.y()),
-              "choose a shorter --bar_length");
+  throw Error(
+      "the survey",
+      "no two of its pictures see the end of a bar at " + Format("%.2f, %.2f", end.x(), end.y()),
+      "choose a shorter --bar_length");
 }
 
 std::vector<bool> Outliers(size_t count, const ControlOptions& options) {
@@ -74,7 +75,8 @@ std::vector<bool> Outliers(size_t count, const ControlOptions& options) {
     return Hash(static_cast<uint64_t>(options.seed), kOutliers, static_cast<int64_t>(i));
   };
   std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return key(a) < key(b); });
-  order.resize(static_cast<size_t>(std::lround(options.outlier_share * static_cast<double>(count))));
+  order.resize(
+      static_cast<size_t>(std::lround(options.outlier_share * static_cast<double>(count))));
   std::vector<bool> is_outlier(count, false);
   for (const size_t i : order) is_outlier[i] = true;
   return is_outlier;

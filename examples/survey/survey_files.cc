@@ -4,8 +4,8 @@
 #include <string>
 
 #include "colmap_seapoint/base/error.h"
-#include "colmap_seapoint/io/atomic_file.h"
-#include "colmap_seapoint/io/colmap_model.h"
+#include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/files/atomic_file.h"
 #include "examples/survey/survey.h"
 
 namespace colmap_seapoint {

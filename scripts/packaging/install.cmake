@@ -35,7 +35,7 @@ endif()
 foreach(box base feature densify flags simd)
   set_target_properties(seapoint_${box} PROPERTIES EXPORT_NAME ${box})
 endforeach()
-install(TARGETS seapoint_base seapoint_feature seapoint_densify seapoint_flags seapoint_simd
+install(TARGETS seapoint_base seapoint_feature_kernels seapoint_feature_detector seapoint_feature_descriptor seapoint_feature_matching seapoint_feature_retrieval seapoint_feature seapoint_densify seapoint_flags seapoint_simd
   EXPORT colmap_seapoint_targets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
 install(EXPORT colmap_seapoint_targets NAMESPACE colmap_seapoint::

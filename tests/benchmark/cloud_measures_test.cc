@@ -1,4 +1,4 @@
-#include "tests/benchmark/cloud_measures.h"
+#include "examples/benchmarks/densify/cloud_measures.h"
 
 #include <gtest/gtest.h>
 

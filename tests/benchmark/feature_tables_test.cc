@@ -1,4 +1,4 @@
-#include "tests/benchmark/feature_tables.h"
+#include "examples/benchmarks/feature/feature_tables.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "colmap_seapoint/base/error.h"
-#include "colmap_seapoint/io/atomic_file.h"
+#include "colmap_seapoint/io/files/atomic_file.h"
 
 namespace colmap_seapoint {
 namespace {

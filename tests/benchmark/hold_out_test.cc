@@ -1,4 +1,4 @@
-#include "tests/benchmark/hold_out.h"
+#include "examples/benchmarks/densify/hold_out.h"
 
 #include <gtest/gtest.h>
 

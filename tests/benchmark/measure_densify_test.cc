@@ -1,4 +1,4 @@
-#include "tests/benchmark/measure_densify.h"
+#include "examples/benchmarks/densify/measure_densify.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "colmap_seapoint/base/error.h"
-#include "colmap_seapoint/io/image_file.h"
+#include "colmap_seapoint/io/image/image_file.h"
 #include "examples/survey/survey.h"
 
 namespace colmap_seapoint {

@@ -75,7 +75,7 @@ Tanks and Temples          0.02     0.5100        0.5200    0.5300
 TABLE
 echo 42.0 >"$set_folder/poses.txt"
 printf 'ours partial,points within 1 GSD                       89.22 %%\n' >"$set_folder/score_truth.txt"
-awk -v output="$folder" -f "$root/tests/benchmark/mvs_tables.awk" "$set_folder/rows.csv" || failed=1
+awk -v output="$folder" -f "$root/scripts/plots/mvs_tables.awk" "$set_folder/rows.csv" || failed=1
 expect "$folder/mvs.csv" \
   '^reef,ours partial,10,20,2.5,4,0.2000,none,here,100,1000,0.01,10,100,1.010,89.22,,,,,$'
 expect "$folder/mvs.csv" '^reef,ours complete,10,20,5,8,0.4000,none,here,100,3000,0.02,20,150,3.030,'

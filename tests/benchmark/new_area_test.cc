@@ -1,4 +1,4 @@
-#include "tests/benchmark/new_area.h"
+#include "examples/benchmarks/densify/new_area.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "tests/benchmark/pair_measures.h"
+#include "examples/benchmarks/feature/pair_measures.h"
 
 #include <gtest/gtest.h>
 

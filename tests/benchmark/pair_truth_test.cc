@@ -1,4 +1,4 @@
-#include "tests/benchmark/pair_truth.h"
+#include "examples/benchmarks/feature/pair_truth.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "colmap_seapoint/io/colmap_database.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "tests/cli/cli_runner.h"
 #include "tests/cli/database_tables.h"
 #include "tests/cli/synthetic_strip.h"

@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "colmap_seapoint/io/colmap_database.h"
-#include "colmap_seapoint/io/image_file.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/files/content_hash.h"
+#include "colmap_seapoint/io/image/image_file.h"
 #include "tests/cli/cli_runner.h"
 #include "tests/cli/synthetic_strip.h"
 
@@ -272,8 +273,8 @@ TEST_F(Extractor, EitherDescriptor) {
   EXPECT_GT(Open().ReadMatches({1, 2}).size(), 200u);
   EXPECT_LT(Open().ReadMatches({2, 3}).size(), 20u);
   ASSERT_EQ(Extract({option, "sift"}).exit_code, 0);
-  result = RunProgram(SEAPOINT_PROGRAM,
-                      {"sequential_matcher", "--database_path", Database().string()});
+  result =
+      RunProgram(SEAPOINT_PROGRAM, {"sequential_matcher", "--database_path", Database().string()});
   EXPECT_EQ(result.exit_code, 0) << result.Text();
   EXPECT_GT(Open().ReadTwoViewGeometry({2, 3}).inliers.size(), 200u);
 }

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "colmap_seapoint/io/image_file.h"
-#include "colmap_seapoint/io/ply_reader.h"
+#include "colmap_seapoint/io/cloud/ply_reader.h"
+#include "colmap_seapoint/io/image/image_file.h"
 #include "tests/cli/cli_runner.h"
 
 namespace colmap_seapoint {

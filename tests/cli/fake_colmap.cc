@@ -22,8 +22,8 @@
 #include <vector>
 
 #include "colmap_seapoint/base/natural_order.h"
-#include "colmap_seapoint/io/colmap_database.h"
-#include "colmap_seapoint/io/colmap_model.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "tests/cli/synthetic_strip.h"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "colmap_seapoint/io/colmap_model.h"
+#include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "tests/cli/cli_runner.h"
 #include "tests/cli/synthetic_strip.h"
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "colmap_seapoint/base/similarity3.h"
-#include "colmap_seapoint/io/colmap_model.h"
-#include "colmap_seapoint/io/ply.h"
+#include "colmap_seapoint/io/cloud/ply.h"
+#include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "tests/cli/cli_runner.h"
 #include "tests/cli/synthetic_strip.h"
 
@@ -74,8 +74,8 @@ class ModelScaler : public testing::Test {
     const Eigen::Vector3d a = middle + Eigen::Vector3d(-0.3, 0.1, kStripRange);
     const Eigen::Vector3d b = middle + Eigen::Vector3d(0.4, -0.2, kStripRange);
     return {"--scale_bars_path",
-            Write("bars.csv", "name1,name2,length_m\na,b," +
-                                  Number(metres_a_unit * (b - a).norm()) + "\n"),
+            Write("bars.csv",
+                  "name1,name2,length_m\na,b," + Number(metres_a_unit * (b - a).norm()) + "\n"),
             "--targets_path",
             Write("targets.csv", "target,image,x,y\n" + Marks("a", a) + Marks("b", b))};
   }
@@ -143,9 +143,9 @@ TEST_F(ModelScaler, ABarBetweenTargetsGivesMetres) {
 TEST_F(ModelScaler, PointsOfTheModelCanBeABarsEnds) {
   const auto first = model_.points3D.begin(), last = std::prev(model_.points3D.end());
   const double length = (first->second.xyz - last->second.xyz).norm();
-  const std::string bars =
-      Write("bars.csv", "name1,name2,length_m\npoint:" + std::to_string(first->first) + ",point:" +
-                            std::to_string(last->first) + "," + Number(2 * length) + "\n");
+  const std::string bars = Write(
+      "bars.csv", "name1,name2,length_m\npoint:" + std::to_string(first->first) +
+                      ",point:" + std::to_string(last->first) + "," + Number(2 * length) + "\n");
   const CliResult result = Scale({"--scale_bars_path", bars});
   ASSERT_EQ(result.exit_code, 0) << result.Text();
   EXPECT_NEAR(Json("scale.json")["scale"].get<double>(), 2, 1e-9);
@@ -183,7 +183,8 @@ TEST_F(ModelScaler, LatitudeAndDepthBecomeEastNorthUp) {
   // 10 km of latitude are 0.09 degrees: the strip, along a meridian.
   std::string text = "image,lat,lon,depth\n";
   for (int i = 0; i < kNumPictures; ++i) {
-    text += model_.images[static_cast<size_t>(i)].name + "," + Number(43.1 + 1e-5 * i) + ",5.9,12\n";
+    text +=
+        model_.images[static_cast<size_t>(i)].name + "," + Number(43.1 + 1e-5 * i) + ",5.9,12\n";
   }
   CliResult result = Scale({"--positions_path", Write("nav.csv", text)});
   ASSERT_EQ(result.exit_code, 0) << result.Text();
@@ -276,8 +277,7 @@ TEST_F(ModelScaler, BadTablesAreNamedWithLineAndRemedy) {
          "no bar has two ends in the model");
   expect({"--positions_path", Write("n.csv", "image,x,y,z\nother.png,1,2,3\n")},
          "none of its pictures is in the model");
-  expect({"--positions_path",
-          Write("n.csv", "image,x,y,z\n" + model_.images[0].name + ",1,2,3\n")},
+  expect({"--positions_path", Write("n.csv", "image,x,y,z\n" + model_.images[0].name + ",1,2,3\n")},
          "1 pictures of the model have a position; 3 are needed");
   expect({"--positions_path", Write("n.csv", PositionsText()), "--crs", "EPSG:4326"},
          "is no projected reference system");
@@ -286,7 +286,8 @@ TEST_F(ModelScaler, BadTablesAreNamedWithLineAndRemedy) {
 TEST_F(ModelScaler, ABarWithoutMarksIsLeftOutByName) {
   std::vector<std::string> arguments = BarArguments();
   Write("bars.csv", ReadBytes(folder_ / "bars.csv") + "a,c,0.5\n");
-  Write("targets.csv", ReadBytes(folder_ / "targets.csv") + "c," + model_.images[0].name + ",9,9\n");
+  Write("targets.csv",
+        ReadBytes(folder_ / "targets.csv") + "c," + model_.images[0].name + ",9,9\n");
   const CliResult result = Scale(arguments);
   EXPECT_EQ(result.exit_code, 3) << result.Text();
   ASSERT_EQ(Json("run.json")["left_out"].size(), 1u);
@@ -370,10 +371,9 @@ TEST_F(ScaledReconstruction, TwoModelsAndABarInOneOfThem) {
   const Eigen::Vector3d b = left + Eigen::Vector3d(0, -0.3, kStripRange);
   std::vector<std::string> arguments = {
       "--scale_bars_path",
-      Write("bars.csv", "name1,name2,length_m,sigma_m\na,b," + Number(kScale * (b - a).norm()) +
-                            ",0.02\n"),
-      "--targets_path",
-      Write("targets.csv", "target,image,x,y\n" + Marks("a", a) + Marks("b", b))};
+      Write("bars.csv",
+            "name1,name2,length_m,sigma_m\na,b," + Number(kScale * (b - a).norm()) + ",0.02\n"),
+      "--targets_path", Write("targets.csv", "target,image,x,y\n" + Marks("a", a) + Marks("b", b))};
   CliResult result = Reconstruct(arguments);
   EXPECT_EQ(result.exit_code, 3) << result.Text();
   EXPECT_EQ(At("report/run.json")["units"], "metres and arbitrary, see summary.txt");

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "colmap_seapoint/base/error.h"
-#include "colmap_seapoint/io/run_report.h"
-#include "colmap_seapoint/io/subprocess.h"
+#include "colmap_seapoint/io/files/run_report.h"
+#include "colmap_seapoint/io/files/subprocess.h"
 #include "tests/cli/cli_runner.h"
 
 namespace colmap_seapoint {

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "colmap_seapoint/io/image_file.h"
+#include "colmap_seapoint/io/image/image_file.h"
 #include "tests/cli/cli_runner.h"
 #include "tests/cli/synthetic_strip.h"
 

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "colmap_seapoint/io/colmap_model.h"
-#include "colmap_seapoint/io/image_file.h"
+#include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/image/image_file.h"
 #include "tests/cli/cli_runner.h"
 #include "tests/cli/synthetic_strip.h"
 

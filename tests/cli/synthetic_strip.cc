@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "colmap_seapoint/io/image_file.h"
+#include "colmap_seapoint/io/image/image_file.h"
 
 namespace colmap_seapoint {
 namespace {

@@ -13,10 +13,9 @@ CliResult RunSeaPoint(const std::vector<std::string>& arguments, const CliOption
   return RunProgram(SEAPOINT_PROGRAM, arguments, options);
 }
 
-const std::vector<std::string> kCommands = {"feature_extractor", "sequential_matcher",
-                                            "exhaustive_matcher", "spatial_matcher",
-                                            "partial_densifier", "cloud_comparer",
-                                            "automatic_reconstructor"};
+const std::vector<std::string> kCommands = {
+    "feature_extractor", "sequential_matcher", "exhaustive_matcher",     "spatial_matcher",
+    "partial_densifier", "cloud_comparer",     "automatic_reconstructor"};
 
 TEST(Usage, HelpListsEveryCommand) {
   for (const char* word : {"help", "-h", "--help"}) {

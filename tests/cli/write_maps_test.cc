@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "colmap_seapoint/io/colmap_model.h"
-#include "colmap_seapoint/io/dense_workspace.h"
-#include "colmap_seapoint/io/image_file.h"
-#include "colmap_seapoint/io/ply.h"
+#include "colmap_seapoint/io/cloud/ply.h"
+#include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/colmap/dense_workspace.h"
+#include "colmap_seapoint/io/image/image_file.h"
 #include "tests/cli/cli_runner.h"
 #include "tests/cli/synthetic_strip.h"
 

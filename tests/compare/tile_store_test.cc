@@ -1,4 +1,4 @@
-#include "colmap_seapoint/io/tile_store.h"
+#include "colmap_seapoint/io/cloud/tile_store.h"
 
 #include <gtest/gtest.h>
 

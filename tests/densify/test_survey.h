@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "densify/densify_sequence.h"
-#include "densify/pair_debug.h"
+#include "densify/sequence/pair_debug.h"
 #include "tests/synthetic/world.h"
 
 namespace colmap_seapoint {
@@ -46,9 +46,9 @@ class TestSurvey : public PictureSource {
   const Eigen::Vector3d& LandmarkOf(int image_idx, size_t seapoint_idx) const;
 
   bool stores_seapoints = true, stores_matches = true;
-  std::map<int, int> num_decoded;  // by image_idx
-  std::map<std::pair<int, int>, int> num_asked;      // by image_idx, smaller first
-  int num_found = 0, num_matched = 0;                // SeaPoints, matches: not stored ones
+  std::map<int, int> num_decoded;                // by image_idx
+  std::map<std::pair<int, int>, int> num_asked;  // by image_idx, smaller first
+  int num_found = 0, num_matched = 0;            // SeaPoints, matches: not stored ones
 
  private:
   const World world_;

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "colmap_seapoint/io/colmap_database.h"
-#include "colmap_seapoint/io/colmap_model.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "tests/cli/cli_runner.h"
 #include "tests/cli/database_tables.h"
 #include "tests/cli/synthetic_strip.h"

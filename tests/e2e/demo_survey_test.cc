@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "colmap_seapoint/io/colmap_model.h"
+#include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "tests/cli/cli_runner.h"
 
 namespace colmap_seapoint {

@@ -53,7 +53,8 @@ TEST(Control, WithoutNoiseItIsTheTruth) {
   std::map<std::string, std::vector<Eigen::Vector3d>> places;
   for (const auto& row : Rows(tables.targets)) {
     const PosedImage& image = *images.at(row[1]);
-    const auto on_plane = Truth().model.cameras.at(image.camera_id)
+    const auto on_plane = Truth()
+                              .model.cameras.at(image.camera_id)
                               .CamFromImg({std::stod(row[2]), std::stod(row[3])});
     ASSERT_TRUE(on_plane);
     const Eigen::Vector3d centre = image.cam_from_world.OriginInSource();

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "feature/rbrief_descriptor.h"
+#include "feature/descriptor/rbrief_descriptor.h"
 #include "tests/synthetic/noise_texture.h"
 
 namespace colmap_seapoint {

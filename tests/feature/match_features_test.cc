@@ -25,7 +25,8 @@ Features Extract(int step, double angle_deg, const std::string& descriptor) {
       const double u = std::cos(angle) * dx + std::sin(angle) * dy + 20.0 * step;
       const double v = -std::sin(angle) * dx + std::cos(angle) * dy;
       const double value = 127 + 90 * texture.At({u, v, 0.3});
-      picture.At(x, y) = static_cast<uint8_t>(255 * std::pow(std::clamp(value / 255, 0.0, 1.0), 1 + 0.5 * step));
+      picture.At(x, y) =
+          static_cast<uint8_t>(255 * std::pow(std::clamp(value / 255, 0.0, 1.0), 1 + 0.5 * step));
     }
   }
   SeaPointExtractionOptions options;

@@ -8,9 +8,9 @@
 #include <cstring>
 #include <vector>
 
-#include "feature/seapoint_detector.h"
+#include "feature/detector/seapoint_detector.h"
 #include "hwy/targets.h"
-#include "tests/feature/detector_oracle.h"
+#include "tests/feature/detector/detector_oracle.h"
 #include "tests/fuzz/require.h"
 
 namespace colmap_seapoint {

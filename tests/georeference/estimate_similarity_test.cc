@@ -143,7 +143,8 @@ TEST(EstimateSimilarity, NoiseWithOutliersStaysWithinTheNoise) {
     EXPECT_NEAR(estimate.position_rms, noise * std::sqrt(3), 0.25 * noise);
     double largest = 0;
     for (const Eigen::Vector3d& position : Strips(4, 15)) {
-      largest = std::max(largest, (estimate.metric_from_model * InModel(position) - position).norm());
+      largest =
+          std::max(largest, (estimate.metric_from_model * InModel(position) - position).norm());
     }
     EXPECT_LT(largest, 1.5 * noise);
   }

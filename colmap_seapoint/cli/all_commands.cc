@@ -1,0 +1,33 @@
+#include "colmap_seapoint/cli/command.h"
+#include "colmap_seapoint/pipeline/compare.h"
+#include "colmap_seapoint/pipeline/densify.h"
+#include "colmap_seapoint/pipeline/extract.h"
+#include "colmap_seapoint/pipeline/match.h"
+#include "colmap_seapoint/pipeline/reconstruct.h"
+#include "colmap_seapoint/pipeline/scale.h"
+
+namespace colmap_seapoint {
+
+std::vector<Command> AllCommands() {
+  return {
+      MakeCommand("feature_extractor", "find SeaPoints in pictures, into a COLMAP database",
+                  RunFeatureExtractor),
+      MakeCommand("sequential_matcher",
+                  "match each picture with those that follow, and look like, it",
+                  RunSequentialMatcher),
+      MakeCommand("exhaustive_matcher", "match every picture with every other one",
+                  RunExhaustiveMatcher),
+      MakeCommand("spatial_matcher", "match each picture with those taken near it",
+                  RunSpatialMatcher),
+      MakeCommand("model_scaler", "COLMAP model and cloud -> metres, from scale bars and positions",
+                  RunModelScaler),
+      MakeCommand("partial_densifier", "COLMAP model and pictures -> one dense cloud",
+                  RunPartialDensifier),
+      MakeCommand("cloud_comparer", "two clouds in one frame -> accuracy, completeness, density",
+                  RunCloudComparer),
+      MakeCommand("automatic_reconstructor", "a folder of pictures -> dense clouds, all in one",
+                  RunAutomaticReconstructor),
+  };
+}
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,202 @@
+#include "colmap_seapoint/cli/manual.h"
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "colmap_seapoint/base/version.h"
+#include "colmap_seapoint/cli/command_line.h"
+
+namespace colmap_seapoint {
+namespace {
+
+// Roff reads '-' as a hyphen, and lines that begin with '.' or a quote as requests.
+std::string Roff(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '\\') {
+      escaped += "\\e";
+    } else if (c == '-') {
+      escaped += "\\-";
+    } else {
+      escaped += c;
+    }
+  }
+  if (!escaped.empty() && (escaped[0] == '.' || escaped[0] == '\'')) escaped = "\\&" + escaped;
+  return escaped;
+}
+
+// Title and text of one option.
+std::string RoffEntry(const OptionInfo& option) {
+  std::string entry = ".TP\n\\fB\\-\\-" + Roff(option.name) + "\\fR ";
+  entry += option.required ? "(required)" : "(=" + Roff(option.default_value) + ")";
+  return entry + "\n" + Roff(OptionHelp(option)) + "\n";
+}
+
+struct Entry {
+  std::string text;
+  bool is_in_group = false;
+  std::vector<std::string> commands;  // that take it
+};
+
+// Of all options, in the order of the commands; one that reads differently in another command
+// stands there once more.
+std::vector<Entry> Entries(const std::vector<Command>& commands) {
+  std::vector<Entry> entries;
+  for (const Command& command : commands) {
+    OptionTable table;
+    command.bind(&table);
+    for (const OptionInfo& option : table.Options()) {
+      const std::string text = RoffEntry(option);
+      auto known = std::find_if(entries.begin(), entries.end(),
+                                [&](const Entry& entry) { return entry.text == text; });
+      const bool is_in_group = option.name.find('.') != std::string::npos;
+      if (known == entries.end()) known = entries.insert(known, {text, is_in_group, {}});
+      known->commands.push_back(command.name);
+    }
+  }
+  return entries;
+}
+
+void PrintCommandSections(const std::vector<Command>& commands, const std::vector<Entry>& entries,
+                          std::ostream& out) {
+  for (const Command& command : commands) {
+    out << ".SS " << Roff(command.name) << "\n" << Roff(command.summary) << "\n";
+    for (const Entry& entry : entries) {
+      const auto& takers = entry.commands;
+      if (entry.is_in_group || takers.size() == commands.size()) continue;
+      if (std::count(takers.begin(), takers.end(), command.name) > 0) out << entry.text;
+    }
+    if (command.foreign.group.empty()) continue;
+    out << ".TP\n\\fB\\-\\-" << Roff(command.foreign.group) << ".\\fR\\fIoption value\\fR\n"
+        << Roff(command.foreign.help) << "\n";
+  }
+}
+
+// What several commands take, once; those that the same commands take stand together.
+void PrintSharedSections(size_t num_commands, std::vector<Entry> entries, std::ostream& out) {
+  const auto is_own = [&](const Entry& entry) {
+    return !entry.is_in_group && entry.commands.size() < num_commands;
+  };
+  entries.erase(std::remove_if(entries.begin(), entries.end(), is_own), entries.end());
+  while (!entries.empty()) {
+    const std::vector<std::string> takers = entries.front().commands;
+    std::string names;
+    for (const std::string& taker : takers) names += (names.empty() ? "" : ", ") + taker;
+    out << ".SS Of " << (takers.size() == num_commands ? "every command" : Roff(names)) << "\n";
+    for (const Entry& entry : entries) {
+      if (entry.commands == takers) out << entry.text;
+    }
+    entries.erase(std::remove_if(entries.begin(), entries.end(),
+                                 [&](const Entry& entry) { return entry.commands == takers; }),
+                  entries.end());
+  }
+}
+
+// Within double quotes of the completion script.
+std::string WordsText(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+std::vector<std::string> Values(const OptionInfo& option) {
+  if (std::holds_alternative<bool*>(option.target)) return {"0", "1"};
+  return option.choices;
+}
+
+// "    feature_extractor:--name) values='0 1' ;;", one line for every option with a fixed choice.
+void PrintValueCases(const std::vector<Command>& commands, std::ostream& out) {
+  std::map<std::string, std::string> patterns;  // values -> case pattern
+  for (const Command& command : commands) {
+    OptionTable table;
+    command.bind(&table);
+    for (const OptionInfo& option : table.Options()) {
+      const std::string values = WordsText(Values(option));
+      if (values.empty()) continue;
+      std::string& pattern = patterns[values];
+      pattern += (pattern.empty() ? "" : " |\\\n      ") + command.name + ":--" + option.name;
+    }
+  }
+  for (const auto& [values, pattern] : patterns) {
+    out << "    " << pattern << ")\n      values='" << values << "' ;;\n";
+  }
+}
+
+void PrintOptionCases(const std::vector<Command>& commands, std::ostream& out) {
+  for (const Command& command : commands) {
+    OptionTable table;
+    command.bind(&table);
+    out << "    " << command.name << ")\n      options='-h --help --" << kProjectPath;
+    for (const OptionInfo& option : table.Options()) out << "\n        --" << option.name;
+    out << "' ;;\n";
+  }
+}
+
+}  // namespace
+
+void PrintManPage(const std::vector<Command>& commands, std::ostream& out) {
+  out << ".\\\" Made by 'colmap_seapoint help --format man' from the program's option tables.\n"
+      << ".TH COLMAP_SEAPOINT 1 \"\" \"colmap_seapoint " << Version() << "\" \"\"\n"
+      << ".SH NAME\ncolmap_seapoint \\- dense clouds from underwater pictures, an add\\-on to "
+         "COLMAP\n"
+      << ".SH SYNOPSIS\n.B colmap_seapoint\n.I command\n[\\fB\\-\\-" << Roff(kProjectPath)
+      << "\\fR \\fIfile.ini\\fR]\n[\\fB\\-\\-\\fIoption value\\fR]...\n.br\n"
+      << ".B colmap_seapoint\n.I command\n.B \\-h\n.br\n"
+      << ".B colmap_seapoint version\n.br\n"
+      << ".B colmap_seapoint help\n[\\fB\\-\\-format\\fR \\fBtext\\fR|\\fBman\\fR|\\fBbash\\fR]\n"
+      << ".SH DESCRIPTION\nTurns the photographs of a dive into one dense point cloud without\n"
+      << "redundancy: SeaPoints and their matches go into a COLMAP database, poses come from the\n"
+      << "unmodified\n.BR colmap (1)\nmapper, and then only what is new is densified, pair by pair "
+         "along the track.\n"
+      << ".PP\nNumbers in options are checked against the range that stands beside them. Behind\n"
+      << "it stands where an option comes from: a section of the paper, COLMAP, or this program.\n"
+      << ".PP\nA project file holds the same options: top\\-level keys, then [Group] sections. A\n"
+      << "value on the command line wins.\n"
+      << ".SH COMMANDS\n";
+  const std::vector<Entry> entries = Entries(commands);
+  PrintCommandSections(commands, entries, out);
+  out << ".SH SHARED OPTIONS\n";
+  PrintSharedSections(commands.size(), entries, out);
+  out << ".SH EXIT STATUS\n"
+      << ".TP\n.B 0\ndone\n"
+      << ".TP\n.B 1\nfailed: the last line on standard error says what, where, and what to do\n"
+      << ".TP\n.B 2\nwrong usage\n"
+      << ".TP\n.B 3\ndone, but some input was left out: each is named on standard error and in the "
+         "run's report\n"
+      << ".SH SEE ALSO\n.BR colmap (1)\n";
+}
+
+void PrintBashCompletion(const std::vector<Command>& commands, std::ostream& out) {
+  std::vector<std::string> names;
+  for (const Command& command : commands) names.push_back(command.name);
+  out << "# Made by 'colmap_seapoint help --format bash' from the program's option tables.\n"
+      << "_colmap_seapoint() {\n"
+      << "  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n"
+      << "  local command=${COMP_WORDS[1]} options= values=\n"
+      << "  COMPREPLY=()\n"
+      << "  if [ \"$COMP_CWORD\" -eq 1 ]; then\n"
+      << "    COMPREPLY=($(compgen -W '" << WordsText(names) << " help version' -- \"$word\"))\n"
+      << "    return\n"
+      << "  fi\n"
+      << "  case $command:$before in\n"
+      << "    help:--format)\n      values='text man bash' ;;\n";
+  PrintValueCases(commands, out);
+  out << "  esac\n"
+      << "  if [ -n \"$values\" ]; then\n"
+      << "    COMPREPLY=($(compgen -W \"$values\" -- \"$word\"))\n"
+      << "    return\n"
+      << "  fi\n"
+      << "  # The value of another option: bash offers file names.\n"
+      << "  case $before in --help) ;; --*) return ;; esac\n"
+      << "  case $command in\n"
+      << "    help)\n      options='--format' ;;\n";
+  PrintOptionCases(commands, out);
+  out << "  esac\n"
+      << "  COMPREPLY=($(compgen -W \"$options\" -- \"$word\"))\n"
+      << "}\n"
+      << "complete -o default -F _colmap_seapoint colmap_seapoint\n";
+}
+
+}  // namespace colmap_seapoint

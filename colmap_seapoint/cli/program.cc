@@ -1,0 +1,90 @@
+#include "colmap_seapoint/cli/program.h"
+
+#include <algorithm>
+#include <iostream>
+#include <variant>
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/base/version.h"
+#include "colmap_seapoint/cli/command.h"
+#include "colmap_seapoint/cli/command_line.h"
+#include "colmap_seapoint/cli/manual.h"
+
+namespace colmap_seapoint {
+namespace {
+
+void PrintHelp(const std::vector<Command>& commands, std::ostream& out) {
+  out << "colmap_seapoint " << Version()
+      << ": dense clouds from underwater pictures, an add-on to COLMAP\n\n"
+      << "usage: colmap_seapoint <command> [--project_path FILE.ini] [--option value]...\n\n";
+  size_t width = 0;
+  for (const Command& command : commands) width = std::max(width, command.name.size());
+  for (const Command& command : commands) {
+    out << "  " << command.name << std::string(width + 2 - command.name.size(), ' ')
+        << command.summary << "\n";
+  }
+  out << "\n'colmap_seapoint <command> -h' lists the options of a command.\n"
+      << "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 done but some input was left out.\n";
+}
+
+// `help [--format text|man|bash]`. The last two are for the package: see manual.h.
+ExitCode RunHelp(const std::vector<Command>& commands, const std::vector<std::string>& arguments) {
+  if (arguments.empty()) {
+    PrintHelp(commands, std::cout);
+    return kDone;
+  }
+  const std::string format =
+      arguments.size() == 2 && arguments[0] == "--format" ? arguments[1] : "";
+  if (format == "text") {
+    PrintHelp(commands, std::cout);
+  } else if (format == "man") {
+    PrintManPage(commands, std::cout);
+  } else if (format == "bash") {
+    PrintBashCompletion(commands, std::cout);
+  } else {
+    throw UsageError(
+        "help takes --format text, man or bash; 'colmap_seapoint <command> -h' lists "
+        "the options of a command");
+  }
+  return kDone;
+}
+
+ExitCode RunCommand(const Command& command, const std::vector<std::string>& arguments) {
+  OptionTable table;
+  command.bind(&table);
+  if (!ParseCommandLine(command, arguments, &table)) {
+    PrintCommandHelp(command, table, std::cout);
+    return kDone;
+  }
+  SetLogLevel(static_cast<LogLevel>(*std::get<int*>(table.Find("log_level")->target)));
+  const CommandResult result = command.run();
+  std::cout << result.text << std::flush;
+  return result.is_complete ? kDone : kIncomplete;
+}
+
+}  // namespace
+
+ExitCode RunProgram(const std::vector<std::string>& arguments) {
+  const std::vector<Command> commands = AllCommands();
+  if (arguments.empty()) {
+    PrintHelp(commands, std::cerr);
+    throw UsageError("no command is given");
+  }
+  const std::string& name = arguments.front();
+  if (name == "help" || name == "-h" || name == "--help") {
+    return RunHelp(commands, {arguments.begin() + 1, arguments.end()});
+  }
+  if (name == "version" || name == "--version") {
+    std::cout << "colmap_seapoint " << Version() << "\n";
+    return kDone;
+  }
+  for (const Command& command : commands) {
+    if (command.name == name) {
+      return RunCommand(command, {arguments.begin() + 1, arguments.end()});
+    }
+  }
+  throw UsageError("'" + name + "' is no command; 'colmap_seapoint help' lists them");
+}
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,343 @@
+#include "colmap_seapoint/georeference/scale_measurements.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/median.h"
+#include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/base/run_options.h"
+#include "colmap_seapoint/georeference/triangulate_target.h"
+#include "colmap_seapoint/io/files/map_projection.h"
+#include "colmap_seapoint/io/files/positions_csv.h"
+#include "colmap_seapoint/io/files/run_report.h"
+#include "colmap_seapoint/io/files/scale_csv.h"
+
+namespace colmap_seapoint {
+namespace {
+
+constexpr size_t kNamesInWarning = 5;
+// Coordinates beyond this are given an offset, a multiple of kOffsetStep: floats have 7 digits.
+constexpr double kMaxCoordinate = 1000;
+constexpr double kOffsetStep = 100;
+// Of the origin of latitude and longitude: about a metre.
+constexpr double kOriginStepDeg = 1e-5;
+// Cameras whose axes add up to less than this share of their number look all round.
+constexpr double kMinMeanAxis = 0.5;
+constexpr char kPositionsOption[] = "--positions_path";
+
+Eigen::Vector3d MedianOf(const std::map<std::string, Eigen::Vector3d>& positions) {
+  Eigen::Vector3d median;
+  for (int i = 0; i < 3; ++i) {
+    std::vector<double> values;
+    for (const auto& [name, position] : positions) values.push_back(position[i]);
+    median[i] = UpperMedian(values);
+  }
+  return median;
+}
+
+double Offset(double coordinate) {
+  if (std::abs(coordinate) <= kMaxCoordinate) return 0;
+  return kOffsetStep * std::round(coordinate / kOffsetStep);
+}
+
+GeoPosition Geo(const Eigen::Vector3d& position) {
+  return {position.x(), position.y(), position.z()};
+}
+
+// Metres in the frame that `units` comes to describe. Offset and origin are of the whole table, so
+// that all models of a dive share them.
+void ToFrame(const std::string& crs, PicturePositions* table, ModelUnits* units) {
+  units->crs = crs;
+  if (table->is_geographic && crs.empty()) {
+    const Eigen::Vector3d median = MedianOf(table->positions);
+    units->frame = "east-north-up";
+    units->origin =
+        GeoPosition{kOriginStepDeg * std::round(median.x() / kOriginStepDeg),
+                    kOriginStepDeg * std::round(median.y() / kOriginStepDeg), Offset(median.z())};
+    for (auto& [name, position] : table->positions) {
+      position = LocalEastNorthUp(Geo(position), *units->origin);
+    }
+    return;
+  }
+  units->frame = crs.empty() ? "local" : "projected";
+  if (!crs.empty()) {
+    const MapProjection projection(crs);  // of metres, too: the name is checked
+    for (auto& [name, position] : table->positions) {
+      if (table->is_geographic) position = projection.FromGeographic(Geo(position));
+    }
+  }
+  const Eigen::Vector3d median = MedianOf(table->positions);
+  for (int i = 0; i < 3; ++i) units->offset[i] = Offset(median[i]);
+  for (auto& [name, position] : table->positions) position -= units->offset;
+}
+
+void WarnOfUnknown(const std::string& path, const std::vector<std::string>& names,
+                   const std::string& what) {
+  if (names.empty()) return;
+  std::string line = path + ": " + std::to_string(names.size()) + " " + what + ":";
+  for (size_t i = 0; i < std::min(names.size(), kNamesInWarning); ++i) line += " " + names[i];
+  LogWarning(line + (names.size() > kNamesInWarning ? " ..." : ""));
+}
+
+std::map<std::string, const PosedImage*> ImagesByName(const SparseModel& model) {
+  std::map<std::string, const PosedImage*> images;
+  for (const PosedImage& image : model.images) images[image.name] = &image;
+  return images;
+}
+
+void AddPositions(const SparseModel& model, const ScaleSources& sources,
+                  ScaleMeasurements* result) {
+  PicturePositions table = ReadPositionsCsv(sources.positions_path, kPositionsOption);
+  ToFrame(sources.crs, &table, &result->units);
+  const auto images = ImagesByName(model);
+  std::vector<std::string> unknown;
+  for (const auto& [name, position] : table.positions) {
+    const auto image = images.find(name);
+    if (image == images.end()) {
+      unknown.push_back(name);
+      continue;
+    }
+    PositionMeasurement measurement;
+    measurement.in_model = image->second->cam_from_world.OriginInSource();
+    measurement.metres = position;
+    if (!table.sigmas.empty()) measurement.sigma = table.sigmas.at(name);
+    result->problem.positions.push_back(measurement);
+    result->position_names.push_back(name);
+  }
+  WarnOfUnknown(sources.positions_path, unknown, "of its pictures are not in the model");
+  if (!result->position_names.empty()) return;
+  throw Error(sources.positions_path, "none of its pictures is in the model",
+              "write the names as the model has them, e.g. " +
+                  (model.images.empty() ? std::string("img1.jpg") : model.images[0].name));
+}
+
+using Targets = std::map<std::string, TriangulatedTarget>;
+
+TargetView ViewOf(const SparseModel& model, const PosedImage& image, const TargetMark& mark) {
+  const Camera& camera = model.cameras.at(image.camera_id);
+  if (!camera.InImage(mark.pixel)) {
+    throw Error(mark.where,
+                "the mark lies outside " + image.name + ", which has " +
+                    std::to_string(camera.width) + " x " + std::to_string(camera.height) +
+                    " pixels in the model",
+                "write pixels of pictures in the model's size, x to the right and y down");
+  }
+  return {&camera, image.cam_from_world, mark.pixel};
+}
+
+TargetSummary Summarise(const std::string& name, const TriangulatedTarget& target) {
+  TargetSummary summary{name, target.problem, target.is_used.size(), 0, 0};
+  double square = 0;
+  for (size_t i = 0; i < target.is_used.size(); ++i) {
+    if (!target.is_used[i]) continue;
+    ++summary.num_used;
+    square += target.errors[i] * target.errors[i];
+  }
+  if (summary.num_used > 0) {
+    summary.rms_pixels = std::sqrt(square / static_cast<double>(summary.num_used));
+  }
+  return summary;
+}
+
+Targets TriangulateTargets(const SparseModel& model, const ScaleSources& sources,
+                           ScaleMeasurements* result) {
+  Targets targets;
+  if (sources.targets_path.empty()) return targets;
+  const auto images = ImagesByName(model);
+  std::map<std::string, std::vector<TargetView>> views;
+  std::vector<std::string> unknown;
+  for (const TargetMark& mark : ReadTargetsCsv(sources.targets_path)) {
+    auto& of_target = views[mark.target];
+    const auto image = images.find(mark.image);
+    if (image == images.end()) {
+      unknown.push_back(mark.target + " in " + mark.image);
+      continue;
+    }
+    of_target.push_back(ViewOf(model, *image->second, mark));
+  }
+  WarnOfUnknown(sources.targets_path, unknown,
+                "of its marks are in pictures that the model has not");
+  for (const auto& [name, of_target] : views) {
+    targets[name] = TriangulateTarget(of_target, sources.max_target_error);
+    result->targets.push_back(Summarise(name, targets[name]));
+    const TargetSummary& summary = result->targets.back();
+    if (summary.problem.empty() && summary.num_used < summary.num_marks) {
+      LogWarning("target " + name + ": " + std::to_string(summary.num_marks - summary.num_used) +
+                 " of its " + std::to_string(summary.num_marks) +
+                 " marks disagree and are not used");
+    }
+  }
+  return targets;
+}
+
+struct Place {
+  Eigen::Vector3d xyz = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+
+// nullopt with a problem when the end has no place in this model.
+std::optional<Place> PlaceOf(const SparseModel& model, const ScaleSources& sources,
+                             const ScaleBar& bar, const ScaleBarEnd& end, const Targets& targets,
+                             std::string* problem) {
+  if (end.point3D_id) {
+    const auto point = model.points3D.find(*end.point3D_id);
+    if (point != model.points3D.end()) return Place{point->second.xyz, Eigen::Matrix3d::Zero()};
+    throw Error(bar.where, "the model has no 3D point " + std::to_string(*end.point3D_id),
+                "give the id of a point of this very model");
+  }
+  const auto target = targets.find(end.name);
+  if (target == targets.end()) {
+    throw Error(bar.where, "'" + end.name + "' is no target",
+                sources.targets_path.empty()
+                    ? "give --targets_path, or point:ID for a 3D point of the model"
+                    : "mark it in " + sources.targets_path +
+                          ", or write point:ID for a 3D point of the model");
+  }
+  if (target->second.problem.empty()) return Place{target->second.xyz, target->second.covariance};
+  *problem = "target " + end.name + " " + target->second.problem;
+  return std::nullopt;
+}
+
+void AddBars(const SparseModel& model, const ScaleSources& sources, ScaleMeasurements* result,
+             RunReport* report) {
+  if (sources.scale_bars_path.empty()) return;
+  const std::vector<ScaleBar> bars = ReadScaleBarsCsv(sources.scale_bars_path);
+  const Targets targets = TriangulateTargets(model, sources, result);
+  for (const ScaleBar& bar : bars) {
+    const std::string name = bar.ends[0].name + " - " + bar.ends[1].name;
+    std::string problem;
+    const auto a = PlaceOf(model, sources, bar, bar.ends[0], targets, &problem);
+    const auto b = PlaceOf(model, sources, bar, bar.ends[1], targets, &problem);
+    const Eigen::Vector3d between =
+        a && b ? Eigen::Vector3d(b->xyz - a->xyz) : Eigen::Vector3d::Zero().eval();
+    if (problem.empty() && !(between.norm() > 0)) problem = "its two ends coincide in the model";
+    if (!problem.empty()) {
+      LeaveOut("scale bar " + name, problem, report);
+      continue;
+    }
+    const Eigen::Vector3d along = between.normalized();
+    LengthMeasurement length;
+    length.in_model = between.norm();
+    length.in_model_sigma = std::sqrt(along.dot((a->covariance + b->covariance) * along));
+    length.metres = bar.metres;
+    length.sigma = bar.sigma.value_or(sources.length_sigma);
+    result->problem.lengths.push_back(length);
+    result->length_names.push_back(name);
+  }
+}
+
+// The mapper poses the two cameras of a rig one by one: their distance is the median over all
+// frames, as certain as these agree.
+void AddRig(const SparseModel& model, const ScaleSources& sources, const StereoRig& rig,
+            ScaleMeasurements* result) {
+  if (sources.rig_spacing <= 0) return;
+  std::vector<double> spacings;
+  for (size_t i = 0; i < rig.right_of.size(); ++i) {
+    if (rig.right_of[i] < 0) continue;
+    const auto right = static_cast<size_t>(rig.right_of[i]);
+    spacings.push_back((model.images[i].cam_from_world.OriginInSource() -
+                        model.images[right].cam_from_world.OriginInSource())
+                           .norm());
+  }
+  if (spacings.empty()) {
+    throw Error("--rig_spacing", "the model holds no two pictures that a rig took at once",
+                "give --rig LEFT,RIGHT and --image_path, or a model with frames");
+  }
+  const double median = UpperMedian(spacings);
+  std::vector<double> deviations;
+  for (const double spacing : spacings) deviations.push_back(std::abs(spacing - median));
+  LengthMeasurement length;
+  length.in_model = median;
+  length.in_model_sigma =
+      1.2533 * 1.4826 * UpperMedian(deviations) / std::sqrt(static_cast<double>(spacings.size()));
+  length.metres = sources.rig_spacing;
+  length.sigma = sources.length_sigma;
+  result->problem.lengths.push_back(length);
+  result->length_names.push_back("rig (" + std::to_string(spacings.size()) + " frames)");
+}
+
+Eigen::Vector3d MeanViewingDirection(const SparseModel& model) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const PosedImage& image : model.images) {
+    sum += image.cam_from_world.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+  }
+  const double num_images = static_cast<double>(model.images.size());
+  if (sum.norm() < kMinMeanAxis * num_images) return Eigen::Vector3d::Zero();
+  return sum.normalized();
+}
+
+}  // namespace
+
+void ScaleSources::Bind(OptionTable* table) {
+  table->Add("scale_bars_path", &scale_bars_path,
+             "table of known lengths, name1,name2,length_m[,sigma_m]: names of targets, or "
+             "point:ID for 3D points of the model",
+             "ours");
+  table->Add("targets_path", &targets_path,
+             "table of the targets' marks, target,image,x,y (pixels; the first pixel's centre is "
+             "0.5, 0.5), in 2 pictures each at least",
+             "ours");
+  table->Add("positions_path", &positions_path,
+             "table of the cameras' positions, image,x,y,z (metres), image,lat,lon,alt or "
+             "image,lat,lon,depth (degrees, metres), with [,sigma] or [,sigma_xy,sigma_z] if known",
+             "ours");
+  table->Add("crs", &crs,
+             "projected reference system of the result, e.g. EPSG:32755: latitude and longitude "
+             "are converted, x,y,z are taken as of it; empty = east, north, up of the place",
+             "ours");
+  table->Add("rig_spacing", &rig_spacing,
+             "distance between the two cameras of the rig, metres; 0 = unknown", "ours", 0, 1000);
+  table->Add("length_sigma", &length_sigma,
+             "standard deviation of rig_spacing and of bars that do not give theirs, metres",
+             "ours", 1e-9, 1000);
+  table->Add("max_target_error", &max_target_error,
+             "marks farther from their target's projection are not used, pixels", "ours", 0.01,
+             1000);
+}
+
+bool ScaleSources::Any() const {
+  return !scale_bars_path.empty() || !positions_path.empty() || rig_spacing > 0;
+}
+
+std::string ScaleSources::Check() const {
+  if (!targets_path.empty() && scale_bars_path.empty()) {
+    return "targets_path is '" + targets_path +
+           "', it needs scale_bars_path: the known lengths between the targets";
+  }
+  if (!crs.empty() && positions_path.empty()) {
+    return "crs is '" + crs + "', it needs positions_path: the positions that it is for";
+  }
+  return "";
+}
+
+void CheckScaleTables(const ScaleSources& sources) {
+  if (!sources.scale_bars_path.empty()) ReadScaleBarsCsv(sources.scale_bars_path);
+  if (!sources.targets_path.empty()) ReadTargetsCsv(sources.targets_path);
+  if (!sources.positions_path.empty()) {
+    PicturePositions table = ReadPositionsCsv(sources.positions_path, kPositionsOption);
+    ModelUnits units;
+    ToFrame(sources.crs, &table, &units);
+  }
+}
+
+ScaleMeasurements GatherMeasurements(const SparseModel& model, const ScaleSources& sources,
+                                     const StereoRig& rig, int seed, RunReport* report) {
+  ScaleMeasurements result;
+  result.units.is_metric = true;
+  result.problem.seed = seed;
+  result.problem.down_in_model = MeanViewingDirection(model);
+  if (!sources.positions_path.empty()) AddPositions(model, sources, &result);
+  AddBars(model, sources, &result, report);
+  AddRig(model, sources, rig, &result);
+  if (!result.problem.positions.empty() || !result.problem.lengths.empty()) return result;
+  throw Error(sources.scale_bars_path,
+              "no bar has two ends in the model: " + (report->left_out.empty()
+                                                          ? std::string("none is given")
+                                                          : report->left_out.back().reason),
+              "mark both ends of a bar in two pictures of the model at least");
+}
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,215 @@
+#include <Eigen/LU>
+#include <algorithm>
+#include <cstring>
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/files/sqlite.h"
+
+namespace colmap_seapoint {
+namespace {
+
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "COLMAP's blobs are little-endian");
+static_assert(sizeof(FeatureMatch) == 2 * sizeof(uint32_t), "a match row is a FeatureMatch");
+
+constexpr int64_t kMaxImageId = 2147483647;
+constexpr const char* kRemedy =
+    "restore a copy of the database, or delete the matches (colmap database_cleaner) and match "
+    "again";
+using RowMajorMatrix3d = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+int64_t PairId(ImagePair pair) {
+  SEAPOINT_CHECK(pair.first < pair.second && pair.second < kMaxImageId);
+  return kMaxImageId * static_cast<int64_t>(pair.first) + static_cast<int64_t>(pair.second);
+}
+
+FeatureMatches SwapColumns(FeatureMatches matches) {
+  for (FeatureMatch& match : matches) std::swap(match.idx1, match.idx2);
+  return matches;
+}
+
+TwoViewGeometry Swap(TwoViewGeometry geometry) {
+  geometry.inliers = SwapColumns(std::move(geometry.inliers));
+  if (geometry.F) geometry.F = geometry.F->transpose().eval();
+  if (geometry.E) geometry.E = geometry.E->transpose().eval();
+  if (geometry.H) geometry.H = geometry.H->inverse().eval();
+  if (geometry.cam2_from_cam1) geometry.cam2_from_cam1 = geometry.cam2_from_cam1->Inverse();
+  return geometry;
+}
+
+void BindMatches(const FeatureMatches& matches, SqlStatement* statement) {
+  statement->Bind(static_cast<int64_t>(matches.size()))
+      .Bind(2)
+      .BindBlob(matches.data(), matches.size() * sizeof(FeatureMatch));
+}
+
+// Columns `column`, +1, +2 hold rows, cols, data.
+FeatureMatches TakeMatches(const std::string& path, const std::string& who, const SqlStatement& row,
+                           int column) {
+  const int64_t num_rows = row.Int(column);
+  const size_t bytes = row.BlobSize(column + 2);
+  if (num_rows < 0 || bytes % sizeof(FeatureMatch) != 0 ||
+      bytes / sizeof(FeatureMatch) != static_cast<uint64_t>(num_rows) ||
+      (num_rows > 0 && row.Int(column + 1) != 2)) {
+    throw Error(path,
+                who + " are damaged: " + std::to_string(bytes) + " bytes for " +
+                    std::to_string(num_rows) + " rows",
+                kRemedy);
+  }
+  FeatureMatches matches(static_cast<size_t>(num_rows));
+  if (num_rows > 0) std::memcpy(matches.data(), row.Blob(column + 2), bytes);
+  return matches;
+}
+
+// nullopt for NULL, an empty blob and all zeros, which COLMAP 3.8 writes for "not computed".
+template <typename Matrix>
+std::optional<Matrix> TakeMatrix(const std::string& path, const std::string& who,
+                                 const SqlStatement& row, int column) {
+  if (row.IsNull(column) || row.BlobSize(column) == 0) return std::nullopt;
+  Matrix matrix;
+  if (row.BlobSize(column) != sizeof(double) * static_cast<size_t>(matrix.size())) {
+    throw Error(path, who + " has a damaged matrix or pose", kRemedy);
+  }
+  std::memcpy(matrix.data(), row.Blob(column), row.BlobSize(column));
+  if (!matrix.allFinite()) throw Error(path, who + " is not finite", kRemedy);
+  if (matrix.isZero(0)) return std::nullopt;
+  return matrix;
+}
+
+std::string PairText(ImagePair pair) {
+  return "images " + std::to_string(pair.first) + " and " + std::to_string(pair.second);
+}
+
+}  // namespace
+
+bool ColmapDatabase::HasMatches(ImagePair pair) const {
+  return HasRow(
+      "SELECT 1 FROM two_view_geometries WHERE pair_id = ? AND (rows <> 0 OR config <> 0)",
+      PairId(pair));
+}
+
+void ColmapDatabase::WriteMatches(uint32_t image_id1, uint32_t image_id2, const FeatureMatches& raw,
+                                  const TwoViewGeometry& geometry) {
+  if (image_id1 > image_id2) {
+    return WriteMatches(image_id2, image_id1, SwapColumns(raw), Swap(geometry));
+  }
+  const int64_t pair_id = PairId({image_id1, image_id2});
+  SqlSavepoint savepoint(path_, db_);
+  SqlStatement matches(path_, db_,
+                       "INSERT OR REPLACE INTO matches(pair_id, rows, cols, data) "
+                       "VALUES(?, ?, ?, ?)");
+  matches.Bind(pair_id);
+  BindMatches(raw, &matches);
+  matches.Run();
+
+  SqlStatement row(path_, db_,
+                   std::string("INSERT OR REPLACE INTO two_view_geometries(pair_id, rows, cols, "
+                               "data, config, F, E, H") +
+                       (extras_.has_poses ? ", qvec, tvec) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"
+                                          : ") VALUES(?, ?, ?, ?, ?, ?, ?, ?)"));
+  row.Bind(pair_id);
+  BindMatches(geometry.inliers, &row);
+  row.Bind(static_cast<int64_t>(geometry.config));
+  RowMajorMatrix3d blobs[3];
+  const std::optional<Eigen::Matrix3d>* matrices[3] = {&geometry.F, &geometry.E, &geometry.H};
+  for (int i = 0; i < 3; ++i) {
+    if (!matrices[i]->has_value()) {
+      row.BindNull();
+      continue;
+    }
+    blobs[i] = **matrices[i];
+    row.BindBlob(blobs[i].data(), sizeof(double) * 9);
+  }
+  Eigen::Vector4d qvec;
+  Eigen::Vector3d tvec;
+  if (extras_.has_poses && geometry.cam2_from_cam1) {
+    const Eigen::Quaterniond& q = geometry.cam2_from_cam1->rotation;
+    qvec << q.w(), q.x(), q.y(), q.z();
+    tvec = geometry.cam2_from_cam1->translation;
+    row.BindBlob(qvec.data(), sizeof(double) * 4).BindBlob(tvec.data(), sizeof(double) * 3);
+  } else if (extras_.has_poses) {
+    row.BindNull().BindNull();
+  }
+  row.Run();
+  savepoint.Release();
+}
+
+void ColmapDatabase::CheckIndices(ImagePair pair, const FeatureMatches& matches,
+                                  const char* table) const {
+  if (matches.empty()) return;
+  int64_t num_keypoints[2] = {0, 0};
+  for (int i = 0; i < 2; ++i) {
+    SqlStatement row(path_, db_, "SELECT rows FROM keypoints WHERE image_id = ?");
+    row.Bind(static_cast<int64_t>(i == 0 ? pair.first : pair.second));
+    if (row.Step()) num_keypoints[i] = row.Int(0);
+  }
+  for (const FeatureMatch& match : matches) {
+    if (match.idx1 >= num_keypoints[0] || match.idx2 >= num_keypoints[1]) {
+      throw Error(path_,
+                  std::string(table) + " of " + PairText(pair) + " name keypoints " +
+                      std::to_string(match.idx1) + " and " + std::to_string(match.idx2) +
+                      ", but the images have " + std::to_string(num_keypoints[0]) + " and " +
+                      std::to_string(num_keypoints[1]),
+                  kRemedy);
+    }
+  }
+}
+
+FeatureMatches ColmapDatabase::ReadMatches(ImagePair pair) const {
+  SqlStatement row(path_, db_, "SELECT rows, cols, data FROM matches WHERE pair_id = ?");
+  row.Bind(PairId(pair));
+  if (!row.Step()) return {};
+  FeatureMatches matches = TakeMatches(path_, "the matches of " + PairText(pair), row, 0);
+  CheckIndices(pair, matches, "the matches");
+  return matches;
+}
+
+TwoViewGeometry ColmapDatabase::ReadTwoViewGeometry(ImagePair pair) const {
+  TwoViewGeometry geometry;
+  SqlStatement row(path_, db_,
+                   std::string("SELECT rows, cols, data, config, F, E, H") +
+                       (extras_.has_poses ? ", qvec, tvec" : "") +
+                       " FROM two_view_geometries WHERE pair_id = ?");
+  row.Bind(PairId(pair));
+  if (!row.Step()) return geometry;
+  const std::string who = "the two-view geometry of " + PairText(pair);
+  geometry.inliers = TakeMatches(path_, "the verified matches of " + PairText(pair), row, 0);
+  CheckIndices(pair, geometry.inliers, "the verified matches");
+  const int64_t config = row.Int(3);
+  if (config >= 0 && config <= static_cast<int64_t>(TwoViewConfig::kPlanarOrPanoramic)) {
+    geometry.config = static_cast<TwoViewConfig>(config);
+  }
+  std::optional<Eigen::Matrix3d>* matrices[3] = {&geometry.F, &geometry.E, &geometry.H};
+  for (int i = 0; i < 3; ++i) {
+    const auto matrix = TakeMatrix<RowMajorMatrix3d>(path_, who, row, 4 + i);
+    if (matrix) *matrices[i] = *matrix;
+  }
+  if (extras_.has_poses) {
+    const auto qvec = TakeMatrix<Eigen::Vector4d>(path_, who, row, 7);
+    const auto tvec = TakeMatrix<Eigen::Vector3d>(path_, who, row, 8);
+    if (qvec) {
+      Rigid3d pose;
+      pose.rotation =
+          Eigen::Quaterniond((*qvec)[0], (*qvec)[1], (*qvec)[2], (*qvec)[3]).normalized();
+      pose.translation = tvec.value_or(Eigen::Vector3d::Zero());
+      geometry.cam2_from_cam1 = pose;
+    }
+  }
+  return geometry;
+}
+
+std::vector<ImagePair> ColmapDatabase::ReadVerifiedPairs() const {
+  std::vector<ImagePair> pairs;
+  SqlStatement rows(path_, db_,
+                    "SELECT pair_id / ?1 AS id1, pair_id % ?1 AS id2 FROM two_view_geometries "
+                    "WHERE rows > 0 AND EXISTS(SELECT 1 FROM images WHERE image_id = id1) "
+                    "AND EXISTS(SELECT 1 FROM images WHERE image_id = id2) ORDER BY pair_id");
+  rows.Bind(kMaxImageId);
+  while (rows.Step()) {
+    const ImagePair pair(static_cast<uint32_t>(rows.Int(0)), static_cast<uint32_t>(rows.Int(1)));
+    if (pair.first < pair.second) pairs.push_back(pair);
+  }
+  return pairs;
+}
+
+}  // namespace colmap_seapoint

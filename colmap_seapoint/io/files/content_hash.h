@@ -1,0 +1,35 @@
+// Tells whether bytes changed (64-bit XXH3); no protection against intent.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+struct XXH3_state_s;
+
+namespace colmap_seapoint {
+
+// Of bytes that come piece by piece; the same hash however they are cut.
+class ContentHash {
+ public:
+  ContentHash();
+  ~ContentHash();
+  ContentHash(const ContentHash&) = delete;
+  ContentHash& operator=(const ContentHash&) = delete;
+
+  void Add(const void* data, size_t size);
+  // 16 hex digits.
+  std::string Hex() const;
+
+ private:
+  XXH3_state_s* state_;
+};
+
+// 16 hex digits.
+std::string HashBytes(const void* data, size_t size);
+std::string HashText(const std::string& text);
+// Throws Error for a file that cannot be read to its end.
+std::string HashFile(const std::filesystem::path& path);
+
+}  // namespace colmap_seapoint

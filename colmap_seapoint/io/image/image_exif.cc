@@ -1,0 +1,106 @@
+#include "colmap_seapoint/io/image/image_exif.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exiv2/exiv2.hpp>
+#include <mutex>
+
+namespace colmap_seapoint {
+namespace {
+
+std::optional<double> Number(const Exiv2::ExifData& exif, const char* key, int index = 0) {
+  const auto found = exif.findKey(Exiv2::ExifKey(key));
+  if (found == exif.end() || static_cast<int>(found->count()) <= index) return std::nullopt;
+  const Exiv2::Rational value = found->toRational(index);
+  if (value.second == 0) return std::nullopt;
+  return static_cast<double>(value.first) / static_cast<double>(value.second);
+}
+
+std::string Text(const Exiv2::ExifData& exif, const char* key) {
+  const auto found = exif.findKey(Exiv2::ExifKey(key));
+  if (found == exif.end()) return {};
+  std::string text = found->toString();
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\0')) text.pop_back();
+  return text;
+}
+
+// COLMAP 3.8's Bitmap::ExifFocalLength without its table of sensors: the 35 mm equivalent, else the
+// focal length with the resolution of the sensor (in pixels of the picture as it was taken).
+std::optional<double> FocalLength(const Exiv2::ExifData& exif, ImageSize size) {
+  const double max_size = std::max(size.width, size.height);
+  const auto focal_35mm = Number(exif, "Exif.Photo.FocalLengthIn35mmFilm");
+  if (focal_35mm && *focal_35mm > 0) return *focal_35mm / 35.0 * max_size;
+
+  const auto focal_mm = Number(exif, "Exif.Photo.FocalLength");
+  const auto pixels = Number(exif, "Exif.Photo.PixelXDimension");
+  const auto resolution = Number(exif, "Exif.Photo.FocalPlaneXResolution");
+  const auto unit = Number(exif, "Exif.Photo.FocalPlaneResolutionUnit");
+  if (!focal_mm || !pixels || !resolution || !unit) return std::nullopt;
+  if (*focal_mm <= 0 || *pixels <= 0 || *resolution <= 0) return std::nullopt;
+  const double unit_mm = *unit == 2 ? 25.4 : *unit == 3 ? 10.0 : 0.0;
+  if (unit_mm == 0.0) return std::nullopt;
+  const double sensor_width_mm = *pixels / *resolution * unit_mm;
+  return *focal_mm / sensor_width_mm * max_size;
+}
+
+std::string CameraKey(const Exiv2::ExifData& exif, ImageSize size) {
+  double focal = Number(exif, "Exif.Photo.FocalLengthIn35mmFilm").value_or(0);
+  if (focal <= 0) focal = Number(exif, "Exif.Photo.FocalLength").value_or(0);
+  return Text(exif, "Exif.Image.Make") + "-" + Text(exif, "Exif.Image.Model") + "-" +
+         std::to_string(focal) + "-" + std::to_string(size.width) + "x" +
+         std::to_string(size.height);
+}
+
+// Degrees, minutes and seconds; minutes and seconds may be missing.
+std::optional<double> Angle(const Exiv2::ExifData& exif, const char* key) {
+  const auto degrees = Number(exif, key, 0);
+  if (!degrees) return std::nullopt;
+  return *degrees + Number(exif, key, 1).value_or(0) / 60 + Number(exif, key, 2).value_or(0) / 3600;
+}
+
+std::optional<GeoPosition> Gps(const Exiv2::ExifData& exif) {
+  const auto latitude = Angle(exif, "Exif.GPSInfo.GPSLatitude");
+  const auto longitude = Angle(exif, "Exif.GPSInfo.GPSLongitude");
+  if (!latitude || !longitude) return std::nullopt;
+  GeoPosition gps;
+  const bool is_south = Text(exif, "Exif.GPSInfo.GPSLatitudeRef") == "S";
+  const bool is_west = Text(exif, "Exif.GPSInfo.GPSLongitudeRef") == "W";
+  const bool is_below = Number(exif, "Exif.GPSInfo.GPSAltitudeRef").value_or(0) == 1;
+  const double altitude = Number(exif, "Exif.GPSInfo.GPSAltitude").value_or(0);
+  gps.latitude_deg = is_south ? -*latitude : *latitude;
+  gps.longitude_deg = is_west ? -*longitude : *longitude;
+  gps.altitude_m = is_below ? -altitude : altitude;
+  if (!IsLegal(gps)) return std::nullopt;
+  return gps;
+}
+
+}  // namespace
+
+ExifInfo ReadExif(const std::filesystem::path& path, ImageSize size) {
+  // Exiv2's XMP parser and its caches are shared by the process.
+  static std::mutex mutex;
+  const std::lock_guard<std::mutex> lock(mutex);
+  static const bool is_set_up = [] {
+    Exiv2::LogMsg::setLevel(Exiv2::LogMsg::mute);
+    return Exiv2::XmpParser::initialize();
+  }();
+  static_cast<void>(is_set_up);
+
+  Exiv2::ExifData exif;
+  try {
+    const auto image = Exiv2::ImageFactory::open(path.string());
+    image->readMetadata();
+    exif = image->exifData();
+  } catch (const std::exception&) {  // Exiv2's own errors among them
+    exif.clear();
+  }
+  ExifInfo info;
+  info.focal_length_px = FocalLength(exif, size);
+  const double orientation = Number(exif, "Exif.Image.Orientation").value_or(1);
+  if (orientation >= 1 && orientation <= 8) info.orientation = static_cast<int>(orientation);
+  info.gps = Gps(exif);
+  info.camera_key = CameraKey(exif, size);
+  return info;
+}
+
+}  // namespace colmap_seapoint

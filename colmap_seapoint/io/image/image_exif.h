@@ -1,0 +1,24 @@
+// What EXIF tells about the camera and its place. For image_file.cc only.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "colmap_seapoint/base/geodesy.h"
+#include "colmap_seapoint/io/image/image_codecs.h"
+
+namespace colmap_seapoint {
+
+struct ExifInfo {
+  std::optional<double> focal_length_px;
+  int orientation = 1;
+  std::optional<GeoPosition> gps;
+  std::string camera_key;
+};
+
+// Pictures without EXIF, or with EXIF that cannot be read, give the defaults. Never prints; may be
+// called from several threads.
+ExifInfo ReadExif(const std::filesystem::path& path, ImageSize size);
+
+}  // namespace colmap_seapoint

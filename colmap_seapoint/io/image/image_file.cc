@@ -1,0 +1,313 @@
+#include "colmap_seapoint/io/image/image_file.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <opencv2/core/utils/logger.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <set>
+#include <system_error>
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/image/image_codecs.h"
+#include "colmap_seapoint/io/image/image_exif.h"
+
+namespace colmap_seapoint {
+namespace {
+
+constexpr uint64_t kMaxSide = 1u << 20;
+constexpr uint64_t kMaxPixels = 1u << 30;
+
+std::string LowerExtension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return extension;
+}
+
+bool HasImageExtension(const std::filesystem::path& path) {
+  static const std::set<std::string> kExtensions = {".jpg", ".jpeg", ".png", ".tif", ".tiff",
+                                                    ".bmp", ".webp", ".ppm", ".pgm", ".jp2"};
+  return kExtensions.count(LowerExtension(path)) > 0;
+}
+
+// Names of all pictures below `folder`, unsorted. Links to files are followed, links to folders
+// are not: they may go in circles.
+std::vector<std::string> FindImages(const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  std::filesystem::recursive_directory_iterator entry(folder), end;
+  for (; entry != end; ++entry) {
+    const std::filesystem::path& path = entry->path();
+    std::error_code ignored;
+    if (path.filename().string().front() == '.') {
+      if (entry->is_directory(ignored)) entry.disable_recursion_pending();
+      continue;
+    }
+    if (!HasImageExtension(path) || !entry->is_regular_file(ignored)) continue;
+    names.push_back(path.lexically_relative(folder).generic_string());
+    if (!IsSafeImageName(names.back())) {
+      throw Error(path.string(), "has a backslash or a control character in its name",
+                  "rename the picture");
+    }
+  }
+  return names;
+}
+
+// Runs a decoder; too little memory becomes an Error.
+template <typename Decoder>
+auto WithinMemory(const std::filesystem::path& path, Decoder decode) {
+  try {
+    return decode();
+  } catch (const std::bad_alloc&) {
+    throw Error(path.string(), "there is not enough memory to decode it",
+                "make the picture smaller or use a machine with more memory");
+  }
+}
+
+// 1 or 3 channels.
+Image<uint8_t> Decode(const std::filesystem::path& path, ImageFormat format) {
+  return WithinMemory(path, [&] {
+    switch (format) {
+      case ImageFormat::kJpeg:
+        return DecodeJpeg(path);
+      case ImageFormat::kPng:
+        return DecodePng(path);
+      case ImageFormat::kTiff:
+        return DecodeTiff(path);
+      case ImageFormat::kPnm:
+        return DecodePnm(path);
+      case ImageFormat::kBmp:
+        return DecodeBmp(path);
+      default:
+        return DecodeWithOpenCv(path, format);
+    }
+  });
+}
+
+Picture DecodePlanes(const std::filesystem::path& path, JpegContent content) {
+  const ImageFormat format = DetectImageFormat(path);
+  return WithinMemory(path, [&] {
+    if (format == ImageFormat::kJpeg) return DecodeJpegPlanes(path, content);
+    Image<uint8_t> image = Decode(path, format);
+    Picture picture;
+    if (image.channels == 1) {
+      picture.luma = std::move(image);
+    } else if (content == JpegContent::kLuma) {
+      picture.luma = LumaOf(image);
+    } else {
+      picture = PictureOf(image);
+    }
+    return picture;
+  });
+}
+
+ImageSize ReadSize(const std::filesystem::path& path) {
+  const ImageFormat format = DetectImageFormat(path);
+  switch (format) {
+    case ImageFormat::kJpeg:
+      return ReadJpegSize(path);
+    case ImageFormat::kPng:
+      return ReadPngSize(path);
+    case ImageFormat::kTiff:
+      return ReadTiffSize(path);
+    case ImageFormat::kPnm:
+      return ReadPnmSize(path);
+    case ImageFormat::kBmp:
+      return ReadBmpSize(path);
+    default: {  // rare: not worth a header parser each
+      const Image<uint8_t> image = Decode(path, format);
+      return {image.width, image.height};
+    }
+  }
+}
+
+cv::Mat AsMat(const Image<uint8_t>& image) {
+  return cv::Mat(image.height, image.width, CV_8UC(image.channels),
+                 const_cast<uint8_t*>(image.data.data()));
+}
+
+Image<uint8_t> Convert(const Image<uint8_t>& image, int num_channels, int code) {
+  Image<uint8_t> converted(image.width, image.height, num_channels);
+  cv::Mat target = AsMat(converted);
+  cv::cvtColor(AsMat(image), target, code);
+  SEAPOINT_CHECK(target.data == converted.data.data());
+  return converted;
+}
+
+}  // namespace
+
+FileHandle OpenImageFile(const std::filesystem::path& path) {
+  std::error_code ignored;
+  FileHandle file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  if (file == nullptr) {
+    throw Error(path.string(), std::string("cannot be read (") + std::strerror(errno) + ")",
+                "check the path and the file's permissions");
+  }
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    throw Error(path.string(), "is no file", "give a picture");
+  }
+  return file;
+}
+
+std::vector<uint8_t> ReadWholeFile(const std::filesystem::path& path) {
+  const FileHandle file = OpenImageFile(path);
+  std::vector<uint8_t> bytes(std::filesystem::file_size(path));
+  bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file.get()));
+  return bytes;
+}
+
+void ThrowDamagedImage(const std::filesystem::path& path, const std::string& finding) {
+  throw Error(path.string(), "cannot be decoded whole (" + finding + ")",
+              "copy the picture again from its source, or take it out of the folder");
+}
+
+ImageSize CheckImageSize(const std::filesystem::path& path, uint64_t width, uint64_t height) {
+  if (width == 0 || height == 0) ThrowDamagedImage(path, "it has no pixels");
+  if (width > kMaxSide || height > kMaxSide || width * height > kMaxPixels) {
+    throw Error(path.string(),
+                "is too large: " + std::to_string(width) + " x " + std::to_string(height) +
+                    " pixels, the limit is " + std::to_string(kMaxPixels),
+                "make the picture smaller, or cut it into parts");
+  }
+  return {static_cast<int>(width), static_cast<int>(height)};
+}
+
+ImageFormat DetectImageFormat(const std::filesystem::path& path) {
+  const FileHandle file = OpenImageFile(path);
+  char head[12] = {0};
+  const size_t size = std::fread(head, 1, sizeof(head), file.get());
+  if (size == 0) {
+    throw Error(path.string(), "is empty (zero bytes)",
+                "copy the picture again from its source, or take it out of the folder");
+  }
+  auto starts_with = [&](const char* magic, size_t length) {
+    return size >= length && std::memcmp(head, magic, length) == 0;
+  };
+  if (starts_with("\xff\xd8\xff", 3)) return ImageFormat::kJpeg;
+  if (starts_with("\x89PNG\r\n\x1a\n", 8)) return ImageFormat::kPng;
+  if (starts_with("II*\0", 4) || starts_with("MM\0*", 4) || starts_with("II+\0", 4) ||
+      starts_with("MM\0+", 4)) {
+    return ImageFormat::kTiff;
+  }
+  if (starts_with("BM", 2)) return ImageFormat::kBmp;
+  if (starts_with("RIFF", 4) && size == 12 && std::memcmp(head + 8, "WEBP", 4) == 0) {
+    return ImageFormat::kWebp;
+  }
+  if (starts_with("\0\0\0\x0cjP  ", 8)) return ImageFormat::kJp2;
+  if (head[0] == 'P' && head[1] >= '1' && head[1] <= '6') return ImageFormat::kPnm;
+  throw Error(path.string(), "is no picture of a known format",
+              "convert it to JPEG, PNG or TIFF, or take it out of the folder");
+}
+
+std::vector<std::string> ListImages(const std::filesystem::path& image_path) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(image_path, error)) {
+    throw Error(image_path.string(), "there is no such folder", "check --image_path");
+  }
+  std::vector<std::string> names;
+  try {
+    names = FindImages(image_path);
+  } catch (const std::filesystem::filesystem_error& failure) {
+    throw Error(failure.path1().empty() ? image_path.string() : failure.path1().string(),
+                "cannot be read (" + failure.code().message() + ")",
+                "check the folder's permissions");
+  }
+  if (names.empty()) {
+    throw Error(image_path.string(), "holds no picture (jpg png tif bmp webp ppm pgm jp2)",
+                "check --image_path");
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::vector<std::string> ReadImageList(const std::filesystem::path& list_path) {
+  std::error_code error;
+  std::ifstream stream(list_path);
+  if (!stream || !std::filesystem::is_regular_file(list_path, error)) {
+    throw Error(list_path.string(), "cannot be read", "check --image_list_path");
+  }
+  std::vector<std::string> names;
+  std::string line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    const size_t last = line.find_last_not_of(" \t\r");
+    line.resize(last == std::string::npos ? 0 : last + 1);
+    if (line.empty() || line.front() == '#') continue;
+    if (!IsSafeImageName(line)) {
+      throw Error(list_path.string(),
+                  "line " + std::to_string(number) + ": '" + line +
+                      "' is absolute or leads out of the image folder",
+                  "give names relative to --image_path, with '/' between folders");
+    }
+    names.push_back(line);
+  }
+  if (names.empty()) {
+    throw Error(list_path.string(), "names no picture", "give one name a line");
+  }
+  return names;
+}
+
+bool IsSafeImageName(const std::string& name) {
+  if (name.empty()) return false;
+  for (const char c : name) {
+    if (c == '\\' || c == '\0' || c == '\n' || c == '\r') return false;
+  }
+  for (size_t begin = 0; begin <= name.size();) {
+    const size_t end = std::min(name.find('/', begin), name.size());
+    const std::string component = name.substr(begin, end - begin);
+    if (component.empty() || component == "..") return false;
+    begin = end + 1;
+  }
+  return true;
+}
+
+ImageInfo ReadImageInfo(const std::filesystem::path& path) {
+  const ImageSize size = ReadSize(path);
+  ExifInfo exif = ReadExif(path, size);
+  ImageInfo info;
+  info.width = size.width;
+  info.height = size.height;
+  info.focal_length_px = exif.focal_length_px;
+  info.exif_orientation = exif.orientation;
+  info.gps = exif.gps;
+  info.camera_key = std::move(exif.camera_key);
+  return info;
+}
+
+GrayImage ReadGrayImage(const std::filesystem::path& path) {
+  return DecodePlanes(path, JpegContent::kLuma).luma;
+}
+
+Picture ReadPicture(const std::filesystem::path& path) {
+  return DecodePlanes(path, JpegContent::kPlanes);
+}
+
+ColorImage ReadColorImage(const std::filesystem::path& path) {
+  Image<uint8_t> image = Decode(path, DetectImageFormat(path));
+  return image.channels == 3 ? image : Convert(image, 3, cv::COLOR_GRAY2RGB);
+}
+
+void WriteImage(const std::filesystem::path& path, const Image<uint8_t>& image) {
+  SEAPOINT_CHECK(!image.Empty() && (image.channels == 1 || image.channels == 3));
+  std::vector<uint8_t> bytes;
+  bool is_encoded = false;
+  try {
+    const Image<uint8_t> swapped =
+        image.channels == 3 ? Convert(image, 3, cv::COLOR_RGB2BGR) : image;
+    is_encoded = cv::imencode(LowerExtension(path), AsMat(swapped), bytes);
+  } catch (const cv::Exception&) {
+    is_encoded = false;
+  }
+  if (!is_encoded) {
+    throw Error(path.string(), "a picture cannot be written in the format of this extension",
+                "use png, jpg or tif");
+  }
+  AtomicFile file(path);
+  file.Write(bytes.data(), bytes.size());
+  file.Commit();
+}
+
+}  // namespace colmap_seapoint

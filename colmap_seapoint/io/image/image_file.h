@@ -1,0 +1,55 @@
+// Pictures on disk: listing, size and EXIF without decoding, decoding to grey and to colour.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "colmap_seapoint/base/geodesy.h"
+#include "colmap_seapoint/base/image.h"
+#include "colmap_seapoint/base/picture.h"
+
+namespace colmap_seapoint {
+
+// Names (relative to `image_path`, '/' between folders, sorted bytewise) of all files below it with
+// a picture's extension (jpg jpeg png tif tiff bmp webp ppm pgm jp2, any case). Hidden files and
+// folders are left out. Throws Error when the folder is missing or holds no picture.
+std::vector<std::string> ListImages(const std::filesystem::path& image_path);
+
+// One name a line; blank lines and lines starting with '#' skipped. Throws Error for a missing
+// file, an empty list, and names that IsSafeImageName refuses.
+std::vector<std::string> ReadImageList(const std::filesystem::path& list_path);
+
+// False for empty and absolute names, names with a ".." or an empty component, with a backslash or
+// a NUL or a newline: such a name could lead out of a folder.
+bool IsSafeImageName(const std::string& name);
+
+struct ImageInfo {
+  int width = 0;  // as stored: the EXIF orientation is not applied, as in COLMAP
+  int height = 0;
+  std::optional<double> focal_length_px;  // from EXIF, by COLMAP's rules, in pixels of this picture
+  int exif_orientation = 1;               // 1..8; not 1: the picture is stored turned
+  std::optional<GeoPosition> gps;         // from EXIF; altitude 0 when it tells none
+  std::string camera_key;  // make, model, focal length, size: pictures of one camera share it
+};
+
+// Reads the header (and EXIF) only. Throws Error for missing, zero-byte, unreadable files.
+ImageInfo ReadImageInfo(const std::filesystem::path& path);
+
+// Whole decodes; EXIF orientation ignored (as COLMAP does: the pixels as they are stored). 16-bit
+// pictures are scaled to 8 bits. Grey is 0.299 R + 0.587 G + 0.114 B: of a JPEG, the luma that it
+// holds, so ReadGrayImage(path) == ReadPicture(path).luma, always.
+// Throws Error for what cannot be decoded *whole*: a truncated JPEG, PNG or TIFF is an error, not a
+// half-grey picture. Nothing is printed by the codec libraries.
+GrayImage ReadGrayImage(const std::filesystem::path& path);
+// A JPEG's own planes, neither enlarged nor converted; of other formats, and of a JPEG that holds
+// none such, the planes of its red, green and blue. A grey picture has no colour.
+Picture ReadPicture(const std::filesystem::path& path);
+ColorImage ReadColorImage(const std::filesystem::path& path);
+
+// 8-bit, 1 or 3 channels, format from the extension; atomic.
+void WriteImage(const std::filesystem::path& path, const Image<uint8_t>& image);
+
+}  // namespace colmap_seapoint

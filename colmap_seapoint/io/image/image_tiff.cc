@@ -1,0 +1,98 @@
+#include <tiffio.h>
+
+#include <cstdarg>
+#include <cstdio>
+
+#include "colmap_seapoint/io/image/image_codecs.h"
+
+namespace colmap_seapoint {
+namespace {
+
+constexpr tmsize_t kMaxAllocation = tmsize_t{1} << 31;
+
+struct TiffErrors {
+  std::string first;
+};
+
+// Returning 1 keeps libtiff from calling the handlers of the whole process, which print.
+int OnError(TIFF*, void* user_data, const char*, const char* format, va_list arguments) {
+  auto* errors = static_cast<TiffErrors*>(user_data);
+  char message[300];
+  std::vsnprintf(message, sizeof(message), format, arguments);
+  if (errors->first.empty()) errors->first = message;
+  return 1;
+}
+
+int OnWarning(TIFF*, void*, const char*, const char*, va_list) { return 1; }
+
+using TiffHandle = std::unique_ptr<TIFF, void (*)(TIFF*)>;
+
+TiffHandle OpenTiff(const std::filesystem::path& path, TiffErrors* errors) {
+  OpenImageFile(path);  // the error of a file that cannot be opened
+  TIFFOpenOptions* options = TIFFOpenOptionsAlloc();
+  TIFFOpenOptionsSetErrorHandlerExtR(options, OnError, errors);
+  TIFFOpenOptionsSetWarningHandlerExtR(options, OnWarning, nullptr);
+  TIFFOpenOptionsSetMaxSingleMemAlloc(options, kMaxAllocation);
+  // 'm': no memory mapping, which would crash when the file shrinks meanwhile.
+  TiffHandle tiff(TIFFOpenExt(path.c_str(), "rm", options), &TIFFClose);
+  TIFFOpenOptionsFree(options);
+  if (tiff == nullptr) ThrowDamagedImage(path, errors->first);
+  return tiff;
+}
+
+ImageSize CheckHeader(const std::filesystem::path& path, TIFF* tiff) {
+  uint32_t width = 0, height = 0;
+  TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &width);
+  TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &height);
+  return CheckImageSize(path, width, height);
+}
+
+bool IsGrey(TIFF* tiff) {
+  uint16_t photometric = 0, samples = 1;
+  TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLESPERPIXEL, &samples);
+  TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &photometric);
+  return samples <= 2 &&
+         (photometric == PHOTOMETRIC_MINISBLACK || photometric == PHOTOMETRIC_MINISWHITE);
+}
+
+}  // namespace
+
+ImageSize ReadTiffSize(const std::filesystem::path& path) {
+  TiffErrors errors;
+  return CheckHeader(path, OpenTiff(path, &errors).get());
+}
+
+Image<uint8_t> DecodeTiff(const std::filesystem::path& path) {
+  TiffErrors errors;
+  const TiffHandle tiff = OpenTiff(path, &errors);
+  const ImageSize size = CheckHeader(path, tiff.get());
+  char message[1024] = "";
+  if (!TIFFRGBAImageOK(tiff.get(), message)) ThrowDamagedImage(path, message);
+  TIFFRGBAImage reader;
+  const int stop_on_error = 1;
+  if (!TIFFRGBAImageBegin(&reader, tiff.get(), stop_on_error, message)) {
+    ThrowDamagedImage(path, message);
+  }
+  // The rows as they are stored, whatever the orientation tag says.
+  reader.orientation = ORIENTATION_TOPLEFT;
+  reader.req_orientation = ORIENTATION_TOPLEFT;
+  const auto width = static_cast<uint32_t>(size.width);
+  const auto height = static_cast<uint32_t>(size.height);
+  std::vector<uint32_t> raster(static_cast<size_t>(width) * height);
+  const bool is_read = TIFFRGBAImageGet(&reader, raster.data(), width, height) != 0;
+  TIFFRGBAImageEnd(&reader);
+  if (!is_read || !errors.first.empty()) ThrowDamagedImage(path, errors.first);
+
+  const bool is_grey = IsGrey(tiff.get());
+  Image<uint8_t> image(size.width, size.height, is_grey ? 1 : 3);
+  uint8_t* out = image.data.data();
+  for (const uint32_t pixel : raster) {
+    *out++ = static_cast<uint8_t>(TIFFGetR(pixel));
+    if (is_grey) continue;
+    *out++ = static_cast<uint8_t>(TIFFGetG(pixel));
+    *out++ = static_cast<uint8_t>(TIFFGetB(pixel));
+  }
+  return image;
+}
+
+}  // namespace colmap_seapoint

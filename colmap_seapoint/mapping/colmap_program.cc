@@ -1,0 +1,129 @@
+#include "colmap_seapoint/mapping/colmap_program.h"
+
+#include <algorithm>
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/io/files/subprocess.h"
+
+namespace colmap_seapoint {
+namespace {
+
+struct MapperDefault {
+  const char* name;
+  const char* value;
+};
+
+constexpr MapperDefault kEveryRound[] = {
+    // With several threads the bundle adjustment adds in another order each time: two runs on the
+    // same database give other models. A run that was interrupted must end as one that was not.
+    {"Mapper.num_threads", "1"},
+    // 30 in COLMAP. Hazy water leaves fewer; 20 costs the clear sets nothing (same models).
+    {"Mapper.abs_pose_min_num_inliers", "20"},
+};
+
+// The models only have to lead the adjustment of our own (adjust_lens.h) to the right valley: all
+// three efforts end with the same lens and centres, to tenths of a millimetre on exact surveys.
+constexpr MapperDefault kSurveyEffort[] = {
+    {"Mapper.ba_global_images_ratio", "1.4"},      {"Mapper.ba_global_frames_ratio", "1.4"},
+    {"Mapper.ba_global_points_ratio", "1.4"},      {"Mapper.ba_global_max_refinements", "2"},
+    {"Mapper.ba_global_max_num_iterations", "20"}, {"Mapper.ba_local_max_refinements", "1"},
+    {"Mapper.ba_local_max_num_iterations", "10"},
+};
+constexpr MapperDefault kFieldEffort[] = {
+    {"Mapper.ba_global_images_ratio", "2"},        {"Mapper.ba_global_frames_ratio", "2"},
+    {"Mapper.ba_global_points_ratio", "2"},        {"Mapper.ba_global_max_refinements", "1"},
+    {"Mapper.ba_global_max_num_iterations", "10"}, {"Mapper.ba_local_max_refinements", "1"},
+    {"Mapper.ba_local_max_num_iterations", "5"},   {"Mapper.ba_local_num_images", "4"},
+};
+
+// COLMAP's own thresholds give the best first model. The pictures that they leave over are few to a
+// place and share little: a round of their own, with less asked, still joins many of them.
+constexpr MapperDefault kLaterRounds[] = {
+    {"Mapper.init_min_num_inliers", "50"},      {"Mapper.init_min_tri_angle", "4"},
+    {"Mapper.abs_pose_min_num_inliers", "15"},  {"Mapper.abs_pose_min_inlier_ratio", "0.15"},
+    {"Mapper.tri_ignore_two_view_tracks", "0"},
+};
+
+constexpr char kInstallRemedy[] =
+    "install COLMAP 3.8 or later (Debian: apt install colmap), or give its path with --colmap_path";
+
+// "  --Mapper.min_model_size arg (=10)" -> "Mapper.min_model_size"; empty for other lines.
+std::string OptionNameInHelp(const std::string& line) {
+  const size_t begin = line.find("--");
+  if (begin == std::string::npos || line.find_first_not_of(' ') < begin) return "";
+  const size_t end = line.find_first_of(" =\t", begin);
+  return line.substr(begin + 2, end == std::string::npos ? end : end - begin - 2);
+}
+
+}  // namespace
+
+bool ColmapProgram::HasMapperOption(const std::string& name) const {
+  return std::binary_search(mapper_options.begin(), mapper_options.end(), name);
+}
+
+ColmapProgram FindColmap(const std::string& colmap) {
+  ColmapProgram program;
+  program.path = FindProgram(colmap, kInstallRemedy);
+  const auto read_line = [&](const std::string& line) {
+    if (program.version.empty() && line.compare(0, 6, "COLMAP") == 0) program.version = line;
+    const std::string name = OptionNameInHelp(line);
+    if (!name.empty()) program.mapper_options.push_back(name);
+  };
+  const auto result = RunSubprocess(program.path, {"mapper", "-h"}, {}, read_line);
+  RunSubprocess(program.path, {"help"}, {}, [&](const std::string& line) {
+    program.has_global_mapper |= line.find(kGlobalMapper) != std::string::npos;
+  });
+  if (program.has_global_mapper) {
+    RunSubprocess(program.path, {kGlobalMapper, "-h"}, {}, read_line);
+  }
+  std::sort(program.mapper_options.begin(), program.mapper_options.end());
+  if (result.Succeeded() && program.HasMapperOption("database_path")) return program;
+  throw Error(program.path.string(),
+              "does not answer 'mapper -h' as COLMAP does (" + result.Text() + ")", kInstallRemedy);
+}
+
+void AppendOptions(const MapperOptions& options, std::vector<std::string>* arguments) {
+  for (const auto& [name, value] : options) {
+    arguments->insert(arguments->end(), {"--" + name, value});
+  }
+}
+
+MapperOptions OptionsOfRound(const ColmapProgram& colmap, Round round, const std::string& effort,
+                             int random_seed, const MapperOptions& user_options) {
+  MapperOptions options;
+  const auto add = [&](const std::string& name, const std::string& value) {
+    if (colmap.HasMapperOption(name)) options[name] = value;
+  };
+  add("random_seed", std::to_string(random_seed));
+  add("Mapper.random_seed", std::to_string(random_seed));  // later versions; -1 = from the clock
+  for (const MapperDefault& option : kEveryRound) add(option.name, option.value);
+  if (round == Round::kLater) {
+    for (const MapperDefault& option : kLaterRounds) add(option.name, option.value);
+  }
+  if (effort == "survey") {
+    for (const MapperDefault& option : kSurveyEffort) add(option.name, option.value);
+  } else if (effort == "field") {
+    for (const MapperDefault& option : kFieldEffort) add(option.name, option.value);
+  }
+  for (const auto& [name, value] : user_options) {
+    if (!colmap.HasMapperOption(name)) {
+      throw UsageError("--" + name + " " + value + ": this mapper has no such option ('" +
+                       colmap.path.string() + " mapper -h' lists them)");
+    }
+    options[name] = value;
+  }
+  return options;
+}
+
+std::optional<MapperOptions> OptionsOfGlobalMapper(const ColmapProgram& colmap, int random_seed) {
+  if (!colmap.has_global_mapper) return std::nullopt;
+  MapperOptions options;
+  const auto add = [&](const std::string& name, const std::string& value) {
+    if (colmap.HasMapperOption(name)) options[name] = value;
+  };
+  add("GlobalMapper.num_threads", "1");
+  add("GlobalMapper.random_seed", std::to_string(random_seed));
+  return options;
+}
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,28 @@
+// Which pairs are worth matching by their place in the order of names alone.
+#pragma once
+
+#include <vector>
+
+#include "colmap_seapoint/base/options.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+
+namespace colmap_seapoint {
+
+struct SequentialPairOptions {
+  int overlap = 5;
+  bool loop_detection = true;
+  int loop_detection_num_images = 10;
+
+  void Bind(OptionTable* table);
+};
+
+void SortNaturally(std::vector<DatabaseImage>* images);
+
+// Pictures in the natural order of their whole names, each with its `overlap` successors: as in
+// COLMAP, a sequence goes on from one folder into the next.
+std::vector<ImagePair> SequentialPairs(std::vector<DatabaseImage> images, int overlap);
+
+// Every pair, in blocks of pictures, so that few pictures are needed at a time.
+std::vector<ImagePair> ExhaustivePairs(std::vector<DatabaseImage> images);
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,46 @@
+// Pairs of pictures that were taken near each other.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "colmap_seapoint/base/options.h"
+#include "colmap_seapoint/base/run_options.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/files/run_report.h"
+
+namespace colmap_seapoint {
+
+// Each field's meaning, unit, legal range and origin: Bind(), in the .cc file.
+struct SpatialPairOptions {
+  int max_num_neighbors = 20;
+  double max_distance = 100;
+  bool ignore_z = true;
+  bool is_gps = true;
+  std::string positions_path;
+
+  void Bind(OptionTable* table);
+};
+
+struct PlacedImage {
+  uint32_t image_id = 0;
+  Eigen::Vector3d position;  // metres
+};
+
+// The images whose position is known, in their order: from --SpatialMatching.positions_path when
+// it is given, else from the EXIF of the pictures in `image_path` when that is given, else from the
+// database. One source only, since their frames differ. The others are left out. Throws Error when
+// no position is known.
+std::vector<PlacedImage> PlaceImages(const std::vector<DatabaseImage>& images,
+                                     const SpatialPairOptions& options,
+                                     const std::string& image_path,
+                                     const std::string& database_path,
+                                     const ColmapDatabase& database, RunReport* report);
+
+// Each image with its nearest ones, up to max_num_neighbors and max_distance; each pair once, by
+// the images' order. O(n log n).
+std::vector<ImagePair> SpatialPairs(const std::vector<PlacedImage>& images,
+                                    const SpatialPairOptions& options);
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,231 @@
+#include "colmap_seapoint/pictures/image_reader.h"
+
+#include <algorithm>
+#include <optional>
+#include <sstream>
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/parallel.h"
+#include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/base/run_options.h"
+#include "colmap_seapoint/io/files/run_report.h"
+
+namespace colmap_seapoint {
+namespace {
+
+// Numbers separated by commas; nullopt when a part is no finite number.
+std::optional<std::vector<double>> ParseParams(const std::string& text) {
+  std::vector<double> params;
+  std::istringstream parts(text);
+  for (std::string part; std::getline(parts, part, ',');) {
+    std::istringstream number(part);
+    number.imbue(std::locale::classic());
+    double value = 0;
+    if (!(number >> value) || !(number >> std::ws).eof()) return std::nullopt;
+    params.push_back(value);
+  }
+  return params;
+}
+
+std::string SizeText(int width, int height) {
+  return std::to_string(width) + "x" + std::to_string(height);
+}
+
+std::string FolderOf(const std::string& name) {
+  const size_t slash = name.rfind('/');
+  return slash == std::string::npos ? "" : name.substr(0, slash);
+}
+
+// Pictures with the same key share a camera.
+std::string CameraGroup(const ReadablePicture& picture, const ImageReaderOptions& options) {
+  if (options.single_camera) return "";
+  if (!options.single_camera_per_folder) return picture.name;
+  return FolderOf(picture.name) + "\n" + SizeText(picture.info.width, picture.info.height) + "\n" +
+         picture.info.camera_key;
+}
+
+Camera NewCamera(const ImageInfo& info, const ImageReaderOptions& options) {
+  const CameraModelInfo* model = FindCameraModel(options.camera_model);
+  SEAPOINT_CHECK(model != nullptr);
+  const double guess = options.default_focal_length_factor * std::max(info.width, info.height);
+  Camera camera =
+      MakeCamera(model->model, info.focal_length_px.value_or(guess), info.width, info.height);
+  camera.has_prior_focal_length = info.focal_length_px.has_value();
+  if (!options.camera_params.empty()) {
+    camera.params = *ParseParams(options.camera_params);
+    camera.has_prior_focal_length = true;
+  }
+  return camera;
+}
+
+// One registration: what the database holds, and which group got which camera.
+class Registrar {
+ public:
+  Registrar(const ImageReaderOptions& options, ColmapDatabase* database)
+      : options_(options), database_(database), cameras_(database->ReadCameras()) {
+    for (const DatabaseImage& image : database->ReadImages()) images_[image.name] = image;
+  }
+
+  // Groups of pictures that are known keep their camera, whatever order new ones come in.
+  void LearnGroups(const std::vector<ReadablePicture>& pictures) {
+    for (const ReadablePicture& picture : pictures) {
+      const auto image = images_.find(picture.name);
+      if (image != images_.end()) {
+        group_cameras_.emplace(CameraGroup(picture, options_), image->second.camera_id);
+      }
+    }
+  }
+
+  // nullopt, with the reason, when the picture does not fit its camera.
+  std::optional<uint32_t> Register(const ReadablePicture& picture, std::string* reason) {
+    const auto known = images_.find(picture.name);
+    const uint32_t camera_id =
+        known != images_.end() ? known->second.camera_id : CameraFor(picture);
+    const auto camera = cameras_.find(camera_id);
+    if (camera == cameras_.end()) {
+      *reason = "its camera " + std::to_string(camera_id) + " is not in the database";
+      return std::nullopt;
+    }
+    const auto& [width, height] = std::pair(camera->second.width, camera->second.height);
+    if (width != picture.info.width || height != picture.info.height) {
+      *reason = "is " + SizeText(picture.info.width, picture.info.height) + " but its camera " +
+                std::to_string(camera_id) + " is " + SizeText(width, height);
+      return std::nullopt;
+    }
+    if (known != images_.end()) return known->second.image_id;
+    return database_->AddImage(picture.name, camera_id);
+  }
+
+ private:
+  uint32_t CameraFor(const ReadablePicture& picture) {
+    const std::string group = CameraGroup(picture, options_);
+    const auto known = group_cameras_.find(group);
+    if (known != group_cameras_.end()) return known->second;
+    const Camera camera = NewCamera(picture.info, options_);
+    const uint32_t camera_id = database_->AddCamera(camera);
+    cameras_[camera_id] = camera;
+    group_cameras_[group] = camera_id;
+    return camera_id;
+  }
+
+  const ImageReaderOptions& options_;
+  ColmapDatabase* database_;
+  std::map<uint32_t, Camera> cameras_;
+  std::map<std::string, DatabaseImage> images_;
+  std::map<std::string, uint32_t> group_cameras_;
+};
+
+void WarnOfTurnedPictures(const std::vector<ReadablePicture>& pictures) {
+  int count = 0;
+  const ReadablePicture* first = nullptr;
+  for (const ReadablePicture& picture : pictures) {
+    if (picture.info.exif_orientation == 1) continue;
+    if (count++ == 0) first = &picture;
+  }
+  if (count == 0) return;
+  LogWarning(std::to_string(count) + " pictures are stored turned by their EXIF orientation (" +
+             first->name + " is the first): the pixels are used as they are stored");
+}
+
+}  // namespace
+
+void ImageReaderOptions::Bind(OptionTable* table) {
+  table->Add("ImageReader.camera_model", &camera_model,
+             "camera model of new cameras: " + CameraModelNames(), "COLMAP (there SIMPLE_RADIAL)");
+  table->Add("ImageReader.camera_params", &camera_params,
+             "parameters of new cameras, separated by commas, in pixels; empty = focal length from "
+             "EXIF or guessed, no distortion",
+             "COLMAP");
+  table->Add("ImageReader.single_camera", &single_camera, "all pictures share one camera",
+             "COLMAP");
+  table->Add("ImageReader.single_camera_per_folder", &single_camera_per_folder,
+             "pictures of one folder, size and EXIF camera share one camera",
+             "COLMAP (there 0, and the folder alone decides)");
+  table->Add("ImageReader.default_focal_length_factor", &default_focal_length_factor,
+             "guess of the focal length without EXIF, in units of the picture's longer side",
+             "COLMAP", 0.1, 100);
+  table->Add("ImageReader.mask_path", &mask_path,
+             "folder of masks <image name>.png, no SeaPoints where a mask is 0; empty = none",
+             "COLMAP");
+}
+
+std::string ImageReaderOptions::Check() const {
+  const CameraModelInfo* model = FindCameraModel(camera_model);
+  if (model == nullptr) {
+    return "--ImageReader.camera_model " + camera_model + ": must be one of " + CameraModelNames();
+  }
+  if (camera_params.empty()) return "";
+  const auto params = ParseParams(camera_params);
+  if (params && static_cast<int>(params->size()) == model->num_params) return "";
+  return "--ImageReader.camera_params " + camera_params + ": must be " +
+         std::to_string(model->num_params) + " numbers separated by commas for " + camera_model;
+}
+
+std::vector<std::string> ListPictures(const std::filesystem::path& image_path,
+                                      const std::string& image_list_path, RunReport* report) {
+  // Listing first also tells of a missing folder when a list is given.
+  if (!std::filesystem::is_directory(image_path)) {
+    throw Error(image_path.string(), "there is no such folder", "check --image_path");
+  }
+  std::vector<std::string> listed =
+      image_list_path.empty() ? ListImages(image_path) : ReadImageList(image_list_path);
+  std::sort(listed.begin(), listed.end());
+  listed.erase(std::unique(listed.begin(), listed.end()), listed.end());
+  report->images_in = static_cast<int64_t>(listed.size());
+  std::vector<std::string> names;
+  for (const std::string& name : listed) {
+    if (IsSafeImageName(name)) {
+      names.push_back(name);
+    } else {
+      LeaveOut(name, "its name could lead out of the folder; rename it", report);
+    }
+  }
+  return names;
+}
+
+std::vector<ReadablePicture> ReadHeaders(const std::filesystem::path& image_path,
+                                         const std::vector<std::string>& names, int num_threads,
+                                         RunReport* report) {
+  std::vector<ReadablePicture> read(names.size());
+  std::vector<std::string> reasons(names.size());
+  ParallelFor(num_threads, static_cast<int64_t>(names.size()), [&](int64_t index) {
+    const auto i = static_cast<size_t>(index);
+    try {
+      read[i] = {names[i], ReadImageInfo(image_path / names[i])};
+    } catch (const Error& error) {
+      reasons[i] = error.Finding();
+    }
+  });
+  std::vector<ReadablePicture> pictures;
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (reasons[i].empty()) {
+      pictures.push_back(std::move(read[i]));
+    } else {
+      LeaveOut(names[i], reasons[i], report);
+    }
+  }
+  WarnOfTurnedPictures(pictures);
+  return pictures;
+}
+
+std::vector<RegisteredPicture> RegisterPictures(const std::vector<ReadablePicture>& pictures,
+                                                const ImageReaderOptions& options,
+                                                ColmapDatabase* database, RunReport* report) {
+  std::vector<RegisteredPicture> registered;
+  Registrar registrar(options, database);
+  registrar.LearnGroups(pictures);
+  database->BeginTransaction();
+  for (const ReadablePicture& picture : pictures) {
+    std::string reason;
+    const auto image_id = registrar.Register(picture, &reason);
+    if (image_id) {
+      registered.push_back({*image_id, picture.name});
+    } else {
+      LeaveOut(picture.name, reason, report);
+    }
+  }
+  database->CommitTransaction();
+  return registered;
+}
+
+}  // namespace colmap_seapoint

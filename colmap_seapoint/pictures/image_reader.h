@@ -1,0 +1,58 @@
+// Which pictures there are, and which camera took each: COLMAP's ImageReader, with its options.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "colmap_seapoint/base/options.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/files/run_report.h"
+#include "colmap_seapoint/io/image/image_file.h"
+
+namespace colmap_seapoint {
+
+// Each field's meaning, unit, legal range and origin: Bind(), in the .cc file.
+struct ImageReaderOptions {
+  std::string camera_model = "OPENCV";
+  std::string camera_params;
+  bool single_camera = false;
+  bool single_camera_per_folder = true;
+  double default_focal_length_factor = 1.2;
+  std::string mask_path;
+
+  void Bind(OptionTable* table);
+  // "" or the whole sentence.
+  std::string Check() const;
+};
+
+// Names below `image_path`, sorted bytewise, each once: all of them, or those of the list. Throws
+// Error when there is none, UsageError never. Names that could lead out of the folder are left out.
+std::vector<std::string> ListPictures(const std::filesystem::path& image_path,
+                                      const std::string& image_list_path, RunReport* report);
+
+struct ReadablePicture {
+  std::string name;
+  ImageInfo info;
+};
+
+// Headers of all pictures; those whose header cannot be read are left out. One warning line when
+// some are stored turned (EXIF orientation), since their pixels are used as they are.
+std::vector<ReadablePicture> ReadHeaders(const std::filesystem::path& image_path,
+                                         const std::vector<std::string>& names, int num_threads,
+                                         RunReport* report);
+
+struct RegisteredPicture {
+  uint32_t image_id = 0;
+  std::string name;
+};
+
+// Adds the missing cameras and images in the order of `pictures`, in one transaction, so that ids
+// do not depend on what interrupts later work. Pictures that the database knows keep their camera.
+// Leaves out pictures whose size is not that of the camera they would get.
+std::vector<RegisteredPicture> RegisterPictures(const std::vector<ReadablePicture>& pictures,
+                                                const ImageReaderOptions& options,
+                                                ColmapDatabase* database, RunReport* report);
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,65 @@
+// The pictures and SeaPoints of a model, for densification.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "colmap_seapoint/base/sparse_model.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "densify/densify_sequence.h"
+#include "feature/extract_features.h"
+#include "feature/match_features.h"
+
+namespace colmap_seapoint {
+
+// `model` outlives it. SeaPoints come from the database, by image name, where it is given and has
+// ours; those found in a reduced (or larger) picture are scaled to the model's camera (paper 4,
+// hybrid resolution), those of a picture of other proportions not used. Matches are the verified
+// ones of the database (the raw ones of a pair that nothing has verified) where it has both
+// pictures' SeaPoints and the pair.
+class ModelPictures : public PictureSource {
+ public:
+  ModelPictures(const SparseModel& model, const std::filesystem::path& image_path,
+                const std::string& database_path, const SeaPointExtractionOptions& extraction,
+                const SeaPointMatchingOptions& matching);
+
+  // "" when the picture's header is readable and of its camera's size; else the reason. Cheap.
+  std::string Check(int image_idx) const;
+  // How many of the model's pictures have SeaPoints in the database.
+  int NumInDatabase() const { return static_cast<int>(in_database_.size()); }
+
+  Picture ReadPicture(int image_idx) override;
+  std::optional<Features> ReadSeaPoints(int image_idx) override;
+  Features FindSeaPoints(const GrayImage& picture) override;
+  // Damaged matches are as good as none; a warning says so.
+  std::optional<FeatureMatches> ReadMatches(int image_idx1, int image_idx2) override;
+  FeatureMatches Match(const Features& features1, const Features& features2) override;
+
+ private:
+  struct StoredSeaPoints {
+    uint32_t image_id;
+    float x_scale, y_scale;  // from the picture they were found in to the model's
+  };
+
+  const PosedImage& ImageAt(int image_idx) const;
+  std::filesystem::path PathOf(int image_idx) const;
+  // Throws Error when the picture is of another size than its camera.
+  // "" or the reason.
+  std::string CheckSize(int image_idx, int width, int height) const;
+  // Whether the database has SeaPoints of ours that ReadSeaPoints can return.
+  bool HasStoredSeaPoints(int image_idx);
+
+  const SparseModel& model_;
+  std::filesystem::path image_path_;
+  SeaPointExtractionOptions extraction_;
+  SeaPointMatchingOptions matching_;
+  std::optional<ColmapDatabase> database_;
+  std::unordered_map<std::string, StoredSeaPoints> in_database_;  // the model's images, by name
+  std::vector<std::optional<bool>> has_stored_;                   // by image_idx, once known
+};
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,262 @@
+#include "colmap_seapoint/pipeline/densify.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <set>
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/parallel.h"
+#include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/io/cloud/ply.h"
+#include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/files/model_units.h"
+#include "colmap_seapoint/mapping/run_mapper.h"
+#include "colmap_seapoint/pictures/model_pictures.h"
+#include "colmap_seapoint/pictures/picture_scale.h"
+#include "colmap_seapoint/pictures/read_rig.h"
+#include "colmap_seapoint/pipeline/write_maps.h"
+#include "colmap_seapoint/report/debug_figures.h"
+#include "colmap_seapoint/report/pairs_csv.h"
+
+namespace colmap_seapoint {
+namespace {
+
+void Validate(const PartialDensifierOptions& options) {
+  for (const std::string& problem :
+       {options.densification.Check(), options.extraction.Check(), CheckRig(options.rig)}) {
+    if (!problem.empty()) throw UsageError(problem);
+  }
+  if (!std::filesystem::is_directory(options.image_path)) {
+    throw Error(options.image_path, "there is no such folder", "check --image_path");
+  }
+  if (options.densification.write_maps) {
+    CheckMapFolders(options.image_path, options.input_path, options.output_path);
+  }
+}
+
+// The model as the pictures see it. With maps in the order of its image ids, as sparse/ beside the
+// cloud has it: fused.ply.vis counts pictures in that order.
+SparseModel ReadModel(const PartialDensifierOptions& options,
+                      ModelContent content = ModelContent::kPosesAndPoints) {
+  SparseModel model = ReadSparseModel(options.input_path, content);
+  if (options.densification.write_maps) SortImagesById(&model);
+  for (const auto& [id, camera] : model.cameras) {
+    if (camera.model != CameraModel::kEquirectangular) continue;
+    throw Error(options.input_path,
+                "camera " + std::to_string(id) +
+                    " is EQUIRECTANGULAR: two panoramas cannot be rectified to one another",
+                "cut its pictures into perspective ones and give their model");
+  }
+  const int num_scaled =
+      ScaleCamerasToPictures(options.image_path, options.run.num_threads, &model);
+  if (num_scaled > 0) {
+    LogInfo(std::to_string(num_scaled) +
+            " pictures are of another resolution than the model's cameras, which are scaled to "
+            "them");
+  }
+  return model;
+}
+
+// Sees a folder of foreign pictures before hours of work.
+void CheckPictures(const PartialDensifierOptions& options, const SparseModel& model,
+                   const ModelPictures& pictures) {
+  std::string first_problem;
+  for (size_t i = 0; i < model.images.size(); ++i) {
+    const std::string problem = pictures.Check(static_cast<int>(i));
+    if (problem.empty()) return;
+    if (first_problem.empty()) first_problem = model.images[i].name + ": " + problem;
+  }
+  if (model.images.empty()) {
+    throw Error(options.input_path, "the model holds no pictures",
+                "give a model of COLMAP's mapper");
+  }
+  throw Error(options.image_path,
+              "none of the model's " + std::to_string(model.images.size()) +
+                  " pictures can be used (" + first_problem + ")",
+              "give the --image_path that the model was made from, reduced or in full");
+}
+
+// The hash of a whole survey takes as long as reading it: on all threads.
+void DescribeInputs(const PartialDensifierOptions& options, const SparseModel& model,
+                    RunReport* report) {
+  std::vector<std::pair<std::string, std::filesystem::path>> files;
+  for (const PosedImage& image : model.images) {
+    files.emplace_back(image.name, std::filesystem::path(options.image_path) / image.name);
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(options.input_path)) {
+    const std::string extension = entry.path().extension().string();
+    if (extension != ".bin" && extension != ".txt") continue;
+    files.emplace_back(entry.path().string(), entry.path());
+  }
+  std::sort(files.begin() + static_cast<std::ptrdiff_t>(model.images.size()), files.end());
+  report->inputs.resize(files.size());
+  ParallelFor(options.run.num_threads, static_cast<int64_t>(files.size()), [&](int64_t index) {
+    const auto i = static_cast<size_t>(index);
+    report->inputs[i] = DescribeInput(files[i].first, files[i].second);
+  });
+}
+
+// Seconds of each stage over all pairs: wall time on the threads that did the work.
+void LogPairSeconds(const SequenceReport& sequence) {
+  double rectification = 0, propagation = 0;
+  for (const PairReport& pair : sequence.pairs) {
+    rectification += pair.rectification_seconds;
+    propagation += pair.propagation_seconds;
+  }
+  LogDebug("rectification " + DurationText(rectification) + ", propagation " +
+           DurationText(propagation) + " (sums over pairs)");
+}
+
+SequenceReport Densify(const PartialDensifierOptions& options, const SparseModel& model,
+                       const StereoRig& rig, ModelPictures* pictures, CloudWriter* cloud,
+                       MapWriter* maps) {
+  std::unique_ptr<Progress> progress;
+  DebugFigures figures(std::filesystem::path(options.output_path) / "debug", model);
+  SequenceCallbacks callbacks;
+  callbacks.sink = [&](const PartialCloud& part) {
+    const std::array<uint32_t, 2> seen_by = {static_cast<uint32_t>(part.image_idx1),
+                                             static_cast<uint32_t>(part.image_idx2)};
+    if (maps != nullptr) maps->AddPair(part, cloud->NumPoints());
+    for (const DensePoint& point : part.points) {
+      cloud->Add({point.xyz, point.normal, point.rgb}, seen_by.data(), 2);
+    }
+  };
+  callbacks.progress = [&](int64_t done, int64_t total) {
+    if (!progress) progress = std::make_unique<Progress>("Densification steps", total);
+    progress->Update(done);
+  };
+  if (options.densification.write_debug) {
+    callbacks.debug = [&](const PairDebug& pair) { figures.Write(pair); };
+  }
+  SequenceReport sequence =
+      DensifySequence(model, pictures, options.densification,
+                      EffectiveNumThreads(options.run.num_threads), callbacks, rig);
+  if (progress) progress->Finish();
+  return sequence;
+}
+
+void FillReport(const SparseModel& model, const SequenceReport& sequence, RunReport* report) {
+  std::set<int> used;
+  for (const PairReport& pair : sequence.pairs) {
+    if (!pair.skipped.empty()) continue;
+    ++report->pairs;
+    used.insert({pair.image_idx1, pair.image_idx2});
+  }
+  for (const LeftOutPicture& picture : sequence.left_out) {
+    LeaveOut(model.images.at(static_cast<size_t>(picture.image_idx)).name, picture.reason, report);
+  }
+  report->images_used = static_cast<int64_t>(used.size());
+}
+
+// The models that one run of the mapper left: each has its own frame and gets its own folder.
+CommandResult DensifySideBySide(const PartialDensifierOptions& options,
+                                const std::vector<std::filesystem::path>& models) {
+  CommandResult result;
+  int64_t num_points = 0;
+  for (const std::filesystem::path& model : models) {
+    PartialDensifierOptions one = options;
+    one.input_path = model.string();
+    one.output_path = (std::filesystem::path(options.output_path) / model.filename()).string();
+    LogInfo("Model " + one.input_path);
+    const RunReport report = DensifyModel(one);
+    num_points += report.points;
+    if (report.points == 0) {
+      LogWarning(one.input_path + " is left out: no pair of its pictures gave a point; see " +
+                 one.output_path + "/pairs.csv");
+    }
+    result.is_complete &= report.points > 0 && report.left_out.empty();
+  }
+  if (num_points > 0) return result;
+  throw Error(options.input_path, "no pair of any of its models gave a point",
+              "see why in the pairs.csv below " + options.output_path);
+}
+
+// nullptr without PartialDensification.write_maps. Their sparse/ is written at once: it takes the
+// model's features too, which are forgotten again before densification.
+std::unique_ptr<MapWriter> StartMaps(const PartialDensifierOptions& options,
+                                     const SparseModel& model) {
+  if (!options.densification.write_maps) return nullptr;
+  auto maps = std::make_unique<MapWriter>(model, options.image_path, options.output_path,
+                                          options.densification,
+                                          EffectiveNumThreads(options.run.num_threads));
+  maps->WriteModel(ReadModel(options, ModelContent::kTriangulated));
+  return maps;
+}
+
+}  // namespace
+
+void PartialDensifierOptions::Bind(OptionTable* table) {
+  table->AddRequired("image_path", &image_path, "folder of the pictures");
+  table->AddRequired("input_path", &input_path,
+                     "COLMAP model, binary or text; or a folder of several, each densified into "
+                     "a folder of its name");
+  table->AddRequired("output_path", &output_path,
+                     "folder for fused.ply, fused.ply.vis, pairs.csv, units.json and run.json");
+  table->Add("database_path", &database_path,
+             "COLMAP database with SeaPoints and matches; empty = they are found again", "ours");
+  table->Add("rig", &rig, kRigHelp, "paper 4");
+  densification.Bind(table);
+  extraction.Bind(table);
+  matching.Bind(table);
+  run.Bind(table);
+}
+
+RunReport DensifyModel(const PartialDensifierOptions& options) {
+  Validate(options);
+  RunReport report = StartReport("partial_densifier", options, options.run);
+  const std::filesystem::path output = options.output_path;
+  CheckWritableDir(output);
+  const ModelUnits units = ReadModelUnits(options.input_path).value_or(ModelUnits());
+  report.units = UnitsWord(units);
+  SequenceReport sequence;
+  {
+    auto timer = std::make_unique<StageTimer>(&report, "partial_densifier");
+    const SparseModel model = ReadModel(options);
+    report.images_in = static_cast<int64_t>(model.images.size());
+    ModelPictures pictures(model, options.image_path, options.database_path, options.extraction,
+                           options.matching);
+    CheckPictures(options, model, pictures);
+    if (!options.database_path.empty() && pictures.NumInDatabase() == 0) {
+      LogWarning(options.database_path +
+                 " holds SeaPoints of no picture of the model: they are "
+                 "found again");
+    }
+    const StereoRig rig = ReadRig(options.rig, options.image_path, options.input_path, model);
+    DescribeInputs(options, model, &report);
+    const std::unique_ptr<MapWriter> maps = StartMaps(options, model);
+    CloudWriter cloud(output / "fused.ply");
+    sequence = Densify(options, model, rig, &pictures, &cloud, maps.get());
+    FillReport(model, sequence, &report);
+    LogPairSeconds(sequence);
+    report.points = static_cast<int64_t>(cloud.NumPoints());
+    WritePairsCsv(output / "pairs.csv", model, sequence);
+    if (report.points > 0) cloud.Finish();
+    WriteModelUnits(output, units);
+    if (maps != nullptr && report.points > 0) {
+      timer = nullptr;
+      timer = std::make_unique<StageTimer>(&report, "write_maps");
+      maps->WriteMaps(sequence.left_out, &report);
+    }
+  }
+  WriteRunReport(output / "run.json", report);
+  if (report.points > 0) {
+    LogInfo(std::to_string(report.points) + " points of " + std::to_string(report.pairs) +
+            " pairs in " + (output / "fused.ply").string() + " (" + UnitsText(units) + ")");
+  }
+  return report;
+}
+
+CommandResult RunPartialDensifier(const PartialDensifierOptions& options) {
+  if (!IsSparseModel(options.input_path)) {
+    const auto models = ListModels(options.input_path);
+    if (!models.empty()) return DensifySideBySide(options, models);
+  }
+  const RunReport report = DensifyModel(options);
+  if (report.points > 0) return ResultOf(report);
+  throw Error(options.input_path, "no pair of its pictures gave a point",
+              "see why in " + options.output_path + "/pairs.csv");
+}
+
+}  // namespace colmap_seapoint

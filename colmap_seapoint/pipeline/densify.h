@@ -1,0 +1,41 @@
+// partial_densifier: model + pictures -> one fused cloud, each pair adding only what is new.
+#pragma once
+
+#include <string>
+
+#include "colmap_seapoint/base/options.h"
+#include "colmap_seapoint/base/run_options.h"
+#include "colmap_seapoint/io/files/run_report.h"
+#include "densify/partial_densification_options.h"
+#include "feature/detector/seapoint_detector.h"
+#include "feature/match_features.h"
+
+namespace colmap_seapoint {
+
+struct PartialDensifierOptions {
+  std::string image_path;
+  std::string input_path;
+  std::string output_path;
+  std::string database_path;
+  std::string rig;
+  PartialDensificationOptions densification;
+  SeaPointExtractionOptions extraction;
+  SeaPointMatchingOptions matching;
+  RunOptions run;
+
+  void Bind(OptionTable* table);
+};
+
+// Pictures may be larger or smaller than the model's cameras, in the same proportions (paper 4,
+// hybrid resolution): the cameras, and the database's SeaPoints, are scaled to them.
+// Writes fused.ply, fused.ply.vis, pairs.csv, units.json (the model's own) and run.json into
+// output_path. Throws Error when no
+// picture of the model is readable. When no pair gave a point, the report says 0 points, no cloud
+// is written, and pairs.csv says why.
+RunReport DensifyModel(const PartialDensifierOptions& options);
+
+// As DensifyModel; or, when input_path is no model but holds several (what COLMAP's mapper leaves
+// in sparse/), each of them into the folder of its name below output_path.
+CommandResult RunPartialDensifier(const PartialDensifierOptions& options);
+
+}  // namespace colmap_seapoint

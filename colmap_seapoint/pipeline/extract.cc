@@ -1,0 +1,211 @@
+#include "colmap_seapoint/pipeline/extract.h"
+
+#include <optional>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/parallel.h"
+#include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/io/files/atomic_file.h"
+
+namespace colmap_seapoint {
+namespace {
+
+// Raise it whenever the same picture and options give other SeaPoints than before.
+constexpr char kExtractionVersion[] = "3";
+// Before the fingerprint of a picture that could not be read: it is tried again by the next run.
+constexpr char kUnreadable[] = "unreadable:";
+constexpr char kNoSeaPoint[] = "has no SeaPoint: it shows no texture, or its mask covers it";
+
+struct Extracted {
+  bool is_unchanged = false;
+  std::string reason;  // why it cannot be used; empty = it can
+  std::string fingerprint;
+  RunReport::Input input;
+  Features features;
+};
+
+// What a picture's SeaPoints depend on is fixed for the whole run, but for the picture itself.
+class Extractor {
+ public:
+  Extractor(const FeatureExtractorOptions& options, std::set<std::string> second_chance_names)
+      : options_(options),
+        second_chance_names_(std::move(second_chance_names)),
+        usual_(options.extraction),
+        second_chance_(options.extraction) {
+    second_chance_.options.num_levels = kSecondChanceLevels;
+    second_chance_.hash = OptionsFingerprint(OptionValues(second_chance_.options));
+  }
+
+  // Called from several threads at once. `stored`: the fingerprint in the database.
+  Extracted Extract(const std::string& name, const std::optional<std::string>& stored) const {
+    const auto picture_path = std::filesystem::path(options_.image_path) / name;
+    Extracted result;
+    result.input = DescribeInput(name, picture_path);
+    const std::filesystem::path mask_path = MaskPath(name);
+    const Extraction& extraction = second_chance_names_.count(name) > 0 ? second_chance_ : usual_;
+    result.fingerprint = kExtractionVersion + (":" + std::to_string(result.input.size)) + ":" +
+                         result.input.hash + ":" + MaskHash(mask_path) + ":" + extraction.hash;
+    if (stored == result.fingerprint) {
+      result.is_unchanged = true;
+      return result;
+    }
+    try {
+      const GrayImage picture = ReadGrayImage(picture_path);
+      const GrayImage mask = ReadMask(mask_path, picture);
+      result.features = ExtractFeatures(picture, mask, extraction.options).features;
+      if (result.features.points.empty()) result.reason = kNoSeaPoint;
+    } catch (const Error& error) {
+      result.reason = error.Finding();
+      result.fingerprint = kUnreadable + result.fingerprint;
+    }
+    return result;
+  }
+
+ private:
+  struct Extraction {
+    explicit Extraction(const SeaPointExtractionOptions& extraction_options)
+        : options(extraction_options), hash(OptionsFingerprint(OptionValues(extraction_options))) {}
+    SeaPointExtractionOptions options;
+    std::string hash;
+  };
+
+  // Empty when there is none, as in COLMAP.
+  std::filesystem::path MaskPath(const std::string& name) const {
+    if (options_.reader.mask_path.empty()) return {};
+    const auto path = std::filesystem::path(options_.reader.mask_path) / (name + ".png");
+    std::error_code error;
+    return std::filesystem::exists(path, error) ? path : std::filesystem::path();
+  }
+
+  static std::string MaskHash(const std::filesystem::path& path) {
+    return path.empty() ? "" : DescribeInput("", path).hash;
+  }
+
+  static GrayImage ReadMask(const std::filesystem::path& path, const GrayImage& picture) {
+    if (path.empty()) return {};
+    GrayImage mask;
+    try {
+      mask = ReadGrayImage(path);
+    } catch (const Error& error) {
+      throw Error(path.string(), "its mask " + error.Finding(), "repair or remove the mask");
+    }
+    if (mask.width == picture.width && mask.height == picture.height) return mask;
+    throw Error(path.string(), "its mask is of another size than the picture",
+                "make both the same size");
+  }
+
+  const FeatureExtractorOptions& options_;
+  std::set<std::string> second_chance_names_;
+  Extraction usual_, second_chance_;
+};
+
+void Validate(const FeatureExtractorOptions& options) {
+  for (const std::string& problem : {options.reader.Check(), options.extraction.Check()}) {
+    if (!problem.empty()) throw UsageError(problem);
+  }
+  const std::string& masks = options.reader.mask_path;
+  if (!masks.empty() && !std::filesystem::is_directory(masks)) {
+    throw Error(masks, "there is no such folder", "check --ImageReader.mask_path");
+  }
+}
+
+// Throws before anything is written.
+void RefuseForeignKeypoints(const std::string& database_path,
+                            const std::vector<ReadablePicture>& pictures,
+                            const ColmapDatabase& database) {
+  std::map<std::string, uint32_t> ids;
+  for (const DatabaseImage& image : database.ReadImages()) ids[image.name] = image.image_id;
+  for (const ReadablePicture& picture : pictures) {
+    const auto id = ids.find(picture.name);
+    if (id == ids.end() || !database.HasFeatures(id->second)) continue;
+    if (database.FeaturesFingerprint(id->second) && database.ReadFeatures(id->second)) continue;
+    throw Error(database_path, "holds keypoints of other software for " + picture.name,
+                "choose a new --database_path: they are never overwritten, and one database holds "
+                "one kind of keypoints (partial_densifier needs none of ours in it)");
+  }
+}
+
+void ExtractAll(const Extractor& extractor, int num_threads,
+                const std::vector<RegisteredPicture>& pictures, ColmapDatabase* database,
+                RunReport* report) {
+  std::vector<std::optional<std::string>> stored;
+  for (const RegisteredPicture& picture : pictures) {
+    stored.push_back(database->FeaturesFingerprint(picture.image_id));
+  }
+  const auto count = static_cast<int64_t>(pictures.size());
+  int64_t num_unchanged = 0;
+  Progress progress("SeaPoints of pictures", count);
+  OrderedPipeline<Extracted>(
+      num_threads, count, 2 * num_threads,
+      [&](int64_t i) {
+        const auto index = static_cast<size_t>(i);
+        return extractor.Extract(pictures[index].name, stored[index]);
+      },
+      [&](int64_t i, Extracted&& result) {
+        const RegisteredPicture& picture = pictures[static_cast<size_t>(i)];
+        if (result.is_unchanged) {
+          ++num_unchanged;
+          const auto features = database->ReadFeatures(picture.image_id);
+          if (!features || features->points.empty()) result.reason = kNoSeaPoint;
+        } else {
+          database->BeginTransaction();
+          database->WriteFeatures(picture.image_id, result.features, result.fingerprint);
+          database->CommitTransaction();
+        }
+        if (result.reason.empty()) ++report->images_used;
+        if (!result.reason.empty()) LeaveOut(picture.name, result.reason, report);
+        report->inputs.push_back(std::move(result.input));
+        progress.Update(i + 1);
+      });
+  progress.Finish();
+  if (num_unchanged > 0) {
+    LogInfo(std::to_string(num_unchanged) + " pictures were there already and are unchanged");
+  }
+}
+
+}  // namespace
+
+void FeatureExtractorOptions::Bind(OptionTable* table) {
+  table->AddRequired("database_path", &database_path,
+                     "COLMAP database; created when it does not exist");
+  table->AddRequired("image_path", &image_path, "folder of the pictures, sub-folders included");
+  table->Add("image_list_path", &image_list_path,
+             "text file with the names of the pictures to take, one a line; empty = all", "COLMAP");
+  reader.Bind(table);
+  extraction.Bind(table);
+  run.Bind(table);
+}
+
+RunReport ExtractPictures(const FeatureExtractorOptions& options,
+                          const PrepareExtraction& prepare) {
+  Validate(options);
+  RunReport report = StartReport("feature_extractor", options, options.run);
+  const auto names = ListPictures(options.image_path, options.image_list_path, &report);
+  {
+    StageTimer timer(&report, "feature_extractor");
+    const auto pictures = ReadHeaders(options.image_path, names, options.run.num_threads, &report);
+    if (!pictures.empty()) {
+      const Extractor extractor(options, prepare ? prepare(pictures) : std::set<std::string>());
+      ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kCreateIfMissing);
+      RefuseForeignKeypoints(options.database_path, pictures, database);
+      const auto registered = RegisterPictures(pictures, options.reader, &database, &report);
+      ExtractAll(extractor, EffectiveNumThreads(options.run.num_threads), registered, &database,
+                 &report);
+    }
+  }
+  WriteRunReport(options.database_path + ".feature_extractor.run.json", report);
+  if (report.images_used > 0) return report;
+  throw Error(options.image_path,
+              "none of its " + std::to_string(report.images_in) + " pictures can be used (" +
+                  report.left_out.front().name + ": " + report.left_out.front().reason + ")",
+              "check the pictures");
+}
+
+CommandResult RunFeatureExtractor(const FeatureExtractorOptions& options) {
+  return ResultOf(ExtractPictures(options));
+}
+
+}  // namespace colmap_seapoint

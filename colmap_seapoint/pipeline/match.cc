@@ -1,0 +1,117 @@
+#include "colmap_seapoint/pipeline/match.h"
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+
+#include "colmap_seapoint/base/natural_order.h"
+#include "colmap_seapoint/pairing/loop_pairs.h"
+#include "colmap_seapoint/pairing/match_pairs.h"
+#include "feature/matching/overlap_share.h"
+
+namespace colmap_seapoint {
+namespace {
+
+// Validate, read, match, write and report: the same for all commands but for what is matched.
+template <typename Options, typename MatchImages>
+RunReport Match(const std::string& command, const Options& options,
+                const MatchImages& match_images) {
+  RunReport report = StartReport(command, options, options.run);
+  {
+    StageTimer timer(&report, command);
+    ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWrite);
+    const auto images = ImagesWithSeaPoints(options.database_path, database, &report);
+    match_images(images, &database, &report);
+    WarnOfLonelyImages(database, images);
+  }
+  WriteRunReport(options.database_path + "." + command + ".run.json", report);
+  return report;
+}
+
+void BindDatabase(std::string* path, OptionTable* table) {
+  table->AddRequired("database_path", path, "COLMAP database with SeaPoints");
+}
+
+}  // namespace
+
+void SequentialMatcherOptions::Bind(OptionTable* table) {
+  BindDatabase(&database_path, table);
+  pairs.Bind(table);
+  matching.Bind(table);
+  run.Bind(table);
+}
+
+void ExhaustiveMatcherOptions::Bind(OptionTable* table) {
+  BindDatabase(&database_path, table);
+  matching.Bind(table);
+  run.Bind(table);
+}
+
+void SpatialMatcherOptions::Bind(OptionTable* table) {
+  BindDatabase(&database_path, table);
+  table->Add("image_path", &image_path,
+             "folder of the pictures: their EXIF tells where they were taken; empty = the database "
+             "does",
+             "ours");
+  pairs.Bind(table);
+  matching.Bind(table);
+  run.Bind(table);
+}
+
+RunReport MatchSequentially(const SequentialMatcherOptions& options) {
+  const SequentialPairOptions& choice = options.pairs;
+  return Match("sequential_matcher", options,
+               [&](std::vector<DatabaseImage> images, ColmapDatabase* database, RunReport* report) {
+                 SortNaturally(&images);
+                 std::vector<ImagePair> further;
+                 if (choice.loop_detection) {
+                   StageTimer timer(report, "loop_detection");
+                   further = FindLoopPairs(
+                       images, {choice.overlap, choice.loop_detection_num_images, options.run},
+                       database);
+                 }
+                 // The next picture overlaps anyway; the others may be round a corner already.
+                 const auto next = SequentialPairs(images, 1);
+                 const std::set<ImagePair> is_next(next.begin(), next.end());
+                 const auto sequential = SequentialPairs(images, choice.overlap);
+                 std::copy_if(sequential.begin(), sequential.end(), std::back_inserter(further),
+                              [&](const ImagePair& pair) { return is_next.count(pair) == 0; });
+                 MatchPairs(next, options.matching, 0, options.run.num_threads, database, report);
+                 MatchPairs(further, DemandingOptions(options.matching), kMinOverlapShare,
+                            options.run.num_threads, database, report);
+               });
+}
+
+RunReport MatchExhaustively(const ExhaustiveMatcherOptions& options) {
+  return Match(
+      "exhaustive_matcher", options,
+      [&](const std::vector<DatabaseImage>& images, ColmapDatabase* database, RunReport* report) {
+        MatchPairs(ExhaustivePairs(images), options.matching, kMinOverlapShare,
+                   options.run.num_threads, database, report);
+      });
+}
+
+RunReport MatchSpatially(const SpatialMatcherOptions& options) {
+  return Match("spatial_matcher", options,
+               [&](std::vector<DatabaseImage> images, ColmapDatabase* database, RunReport* report) {
+                 SortNaturally(&images);
+                 const auto placed = PlaceImages(images, options.pairs, options.image_path,
+                                                 options.database_path, *database, report);
+                 MatchPairs(SpatialPairs(placed, options.pairs), options.matching, kMinOverlapShare,
+                            options.run.num_threads, database, report);
+               });
+}
+
+CommandResult RunSequentialMatcher(const SequentialMatcherOptions& options) {
+  return ResultOf(MatchSequentially(options));
+}
+
+CommandResult RunExhaustiveMatcher(const ExhaustiveMatcherOptions& options) {
+  return ResultOf(MatchExhaustively(options));
+}
+
+CommandResult RunSpatialMatcher(const SpatialMatcherOptions& options) {
+  return ResultOf(MatchSpatially(options));
+}
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,55 @@
+// sequential_matcher, exhaustive_matcher, spatial_matcher: SeaPoints -> `matches` and
+// `two_view_geometries`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "colmap_seapoint/base/options.h"
+#include "colmap_seapoint/base/run_options.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/files/run_report.h"
+#include "colmap_seapoint/pairing/pair_lists.h"
+#include "colmap_seapoint/pairing/spatial_pairs.h"
+#include "feature/match_features.h"
+
+namespace colmap_seapoint {
+
+struct SequentialMatcherOptions {
+  std::string database_path;
+  SequentialPairOptions pairs;
+  SeaPointMatchingOptions matching;
+  RunOptions run;
+
+  void Bind(OptionTable* table);
+};
+
+struct ExhaustiveMatcherOptions {
+  std::string database_path;
+  SeaPointMatchingOptions matching;
+  RunOptions run;
+
+  void Bind(OptionTable* table);
+};
+
+struct SpatialMatcherOptions {
+  std::string database_path;
+  std::string image_path;
+  SpatialPairOptions pairs;
+  SeaPointMatchingOptions matching;
+  RunOptions run;
+
+  void Bind(OptionTable* table);
+};
+
+// Matches and verifies every pair that has no row yet, in the order given; also writes
+// <database>.<command>.run.json. Throws Error when no picture has SeaPoints.
+RunReport MatchSequentially(const SequentialMatcherOptions& options);
+RunReport MatchExhaustively(const ExhaustiveMatcherOptions& options);
+RunReport MatchSpatially(const SpatialMatcherOptions& options);
+
+CommandResult RunSequentialMatcher(const SequentialMatcherOptions& options);
+CommandResult RunExhaustiveMatcher(const ExhaustiveMatcherOptions& options);
+CommandResult RunSpatialMatcher(const SpatialMatcherOptions& options);
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,99 @@
+#include "colmap_seapoint/pipeline/prepare_database.h"
+
+#include <system_error>
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/base/run_options.h"
+#include "colmap_seapoint/io/files/content_hash.h"
+#include "colmap_seapoint/io/files/run_report.h"
+
+namespace colmap_seapoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kStage[] = "database";
+
+void Remove(const fs::path& path) {
+  std::error_code error;
+  fs::remove(path, error);
+  if (!error) return;
+  throw Error(path.string(), "cannot be removed (" + error.message() + ")",
+              "check the folder's permissions");
+}
+
+// With the journals that SQLite keeps beside it: an old one would be played into a new database.
+void RemoveDatabase(const fs::path& path) {
+  for (const char* suffix : {"-wal", "-shm", "-journal", ""}) Remove(path.string() + suffix);
+}
+
+void CopyFeatures(const ColmapDatabase& from, const std::vector<RegisteredPicture>& pictures,
+                  ColmapDatabase* to) {
+  std::map<std::string, uint32_t> old_ids;
+  for (const DatabaseImage& image : from.ReadImages()) old_ids[image.name] = image.image_id;
+  to->BeginTransaction();
+  for (const RegisteredPicture& picture : pictures) {
+    const auto old_id = old_ids.find(picture.name);
+    if (old_id == old_ids.end()) continue;
+    const auto fingerprint = from.FeaturesFingerprint(old_id->second);
+    const auto features = from.ReadFeatures(old_id->second);
+    if (fingerprint && features) to->WriteFeatures(picture.image_id, *features, *fingerprint);
+  }
+  to->CommitTransaction();
+}
+
+// Beside its place and renamed: a run that is killed meanwhile begins anew.
+void BeginAnew(const fs::path& path, const std::vector<ReadablePicture>& pictures,
+               const ImageReaderOptions& reader) {
+  LogInfo("Pictures, cameras or matching changed: the database is begun anew, SeaPoints are kept");
+  const fs::path fresh_path = path.string() + ".tmp";
+  RemoveDatabase(fresh_path);
+  {
+    const ColmapDatabase old(path, ColmapDatabase::Mode::kReadWrite);  // plays its journal in
+    ColmapDatabase fresh(fresh_path, ColmapDatabase::Mode::kCreateIfMissing);
+    // The extraction reports what is left out here.
+    RunReport ignored;
+    const auto registered = RegisterPictures(pictures, reader, &fresh, &ignored);
+    CopyFeatures(old, registered, &fresh);
+  }
+  RemoveDatabase(path);
+  fs::rename(fresh_path, path);
+}
+
+}  // namespace
+
+void PrepareDatabase(const fs::path& database_path, const std::vector<ReadablePicture>& pictures,
+                     const ImageReaderOptions& reader, const std::string& fingerprint,
+                     WorkspaceState* state) {
+  const auto begun = state->Read(kStage);
+  if (begun && begun->fingerprint == fingerprint) return;
+  if (fs::exists(database_path)) {
+    if (!begun) {
+      throw Error(database_path.string(), "was not made by automatic_reconstructor",
+                  "choose another --workspace_path: a database is never overwritten");
+    }
+    BeginAnew(database_path, pictures, reader);
+  }
+  state->Finish(kStage, fingerprint, RunReport());
+}
+
+std::string DatabaseFingerprint(const fs::path& database_path) {
+  const ColmapDatabase database(database_path, ColmapDatabase::Mode::kReadWrite);
+  std::string text;
+  for (const DatabaseImage& image : database.ReadImages()) {
+    text += std::to_string(image.image_id) + " " + std::to_string(image.camera_id) + " " +
+            image.name + " " + database.FeaturesFingerprint(image.image_id).value_or("") + "\n";
+  }
+  ContentHash hash;
+  hash.Add(text.data(), text.size());
+  for (const auto& [camera_id, camera] : database.ReadCameras()) {
+    const int numbers[] = {static_cast<int>(camera_id), static_cast<int>(camera.model),
+                           camera.width, camera.height, camera.has_prior_focal_length ? 1 : 0};
+    hash.Add(numbers, sizeof(numbers));
+    hash.Add(camera.params.data(), camera.params.size() * sizeof(double));
+  }
+  return hash.Hex();
+}
+
+}  // namespace colmap_seapoint

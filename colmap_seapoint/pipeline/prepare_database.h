@@ -1,0 +1,25 @@
+// The workspace's database follows its inputs: what an interrupted run computed is kept exactly as
+// long as an uninterrupted run would compute the same.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "colmap_seapoint/pictures/image_reader.h"
+#include "colmap_seapoint/pipeline/workspace_state.h"
+
+namespace colmap_seapoint {
+
+// Brings WORKSPACE/database.db into a state from which extraction and matching go on: as it is
+// when `fingerprint` (of pictures, cameras and matching) is the one it was begun with; otherwise
+// begun anew, with the SeaPoints of pictures that are still there. Throws Error when the workspace
+// holds a database that is not ours.
+void PrepareDatabase(const std::filesystem::path& database_path,
+                     const std::vector<ReadablePicture>& pictures, const ImageReaderOptions& reader,
+                     const std::string& fingerprint, WorkspaceState* state);
+
+// Hash of images, cameras and of what their SeaPoints were made from.
+std::string DatabaseFingerprint(const std::filesystem::path& database_path);
+
+}  // namespace colmap_seapoint

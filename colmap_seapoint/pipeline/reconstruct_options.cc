@@ -1,0 +1,65 @@
+#include <filesystem>
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/pictures/read_rig.h"
+#include "colmap_seapoint/pipeline/reconstruct.h"
+#include "colmap_seapoint/pipeline/scale_models.h"
+
+namespace colmap_seapoint {
+
+void AutomaticReconstructorOptions::Bind(OptionTable* table) {
+  table->AddRequired("image_path", &image_path, "folder of the pictures, sub-folders included");
+  table->AddRequired("workspace_path", &workspace_path,
+                     "folder for database.db, sparse/, dense/ and report/; created when missing");
+  table->Add("colmap_path", &colmap_path, "the colmap program: a path, or a name on PATH", "ours");
+  table->Add(
+      kQualityOption, &quality,
+      "what posing may cost. field: a coarse mapper, or global_mapper where this COLMAP has "
+      "it, for all that the lens adjustment mends afterwards; survey: the mapper adjusts "
+      "more often; archive: COLMAP's own adjustments, twice the SeaPoints, SIFT beside rBRIEF",
+      "ours", {"field", "survey", "archive"});
+  table->Add("matcher", &matcher,
+             "which pairs are tried; auto = all pairs of up to " +
+                 std::to_string(kMaxImagesForAllPairs) + " pictures, else sequential",
+             "ours", {"auto", "sequential", "exhaustive"});
+  table->Add("adjust_principal_point", &adjust_principal_point,
+             "after mapping, adjust every model once more with the principal point free; not with "
+             "--ImageReader.camera_params or --Mapper.ba_refine_*",
+             "ours");
+  table->Add("rig", &rig, kRigHelp, "paper 4");
+  scale.Bind(table);
+  reader.Bind(table);
+  extraction.Bind(table);
+  pairs.Bind(table);
+  matching.Bind(table);
+  densification.Bind(table);
+  run.Bind(table);
+}
+
+void AutomaticReconstructorOptions::Preset() {
+  if (quality != "archive") return;
+  extraction.min_num_features *= 2;
+  extraction.max_num_features *= 2;
+  extraction.descriptor = "sift";
+}
+
+ForeignOptions AutomaticReconstructorOptions::Foreign() {
+  return {"Mapper",
+          "handed on to colmap ('colmap mapper -h' lists them); Mapper.num_threads is 1 unless "
+          "given, since the mapper's result differs from run to run with more",
+          &mapper};
+}
+
+void AutomaticReconstructorOptions::Check() const {
+  for (const std::string& problem :
+       {reader.Check(), extraction.Check(), densification.Check(), CheckRig(rig), scale.Check()}) {
+    if (!problem.empty()) throw UsageError(problem);
+  }
+  if (!std::filesystem::is_directory(image_path)) {
+    throw Error(image_path, "there is no such folder", "check --image_path");
+  }
+  CheckRigFolders(rig, image_path);
+  CheckScaleTables(scale);
+}
+
+}  // namespace colmap_seapoint

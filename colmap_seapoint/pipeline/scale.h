@@ -1,0 +1,40 @@
+// model_scaler: a model (and its cloud) of arbitrary units -> metres, and east-north-up where
+// positions allow.
+#pragma once
+
+#include <string>
+
+#include "colmap_seapoint/base/options.h"
+#include "colmap_seapoint/base/run_options.h"
+#include "colmap_seapoint/georeference/scale_measurements.h"
+#include "colmap_seapoint/io/files/run_report.h"
+
+namespace colmap_seapoint {
+
+struct ModelScalerOptions {
+  std::string input_path;
+  std::string output_path;
+  std::string cloud_path;
+  std::string image_path;
+  std::string rig;
+  std::string report_path;
+  ScaleSources sources;
+  RunOptions run;
+
+  void Bind(OptionTable* table);
+};
+
+struct ScaledModel {
+  RunReport report;
+  std::string text;  // for stdout
+  std::string line;  // for a summary
+};
+
+// Writes the model (in the form it had, binary or text, with its rigs and frames), units.json,
+// scale.json and run.json into output_path, and the cloud under its own name. The input is only
+// read. Throws Error when the measurements do not give a scale.
+ScaledModel ScaleModel(const ModelScalerOptions& options);
+
+CommandResult RunModelScaler(const ModelScalerOptions& options);
+
+}  // namespace colmap_seapoint

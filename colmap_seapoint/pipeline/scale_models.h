@@ -1,0 +1,22 @@
+// The models of automatic_reconstructor, brought into metres before they are densified.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "colmap_seapoint/pipeline/scale.h"
+#include "colmap_seapoint/pipeline/workspace_state.h"
+#include "colmap_seapoint/report/reconstruction_summary.h"
+
+namespace colmap_seapoint {
+
+// WORKSPACE/sparse/<k> -> WORKSPACE/sparse_scaled/<k> for every model, where `scaler` names
+// sources; what an earlier run has done already is taken as it is. Sets path, units and scaling of
+// the models. A model that cannot be scaled stays as it is, and is named in the report; throws
+// Error when none can. Without sources, removes what earlier runs with some left in sparse_scaled.
+RunReport ScaleAllModels(ModelScalerOptions scaler, const std::filesystem::path& workspace,
+                         const std::string& mapper_fingerprint, WorkspaceState* state,
+                         std::vector<ModelSummary>* models);
+
+}  // namespace colmap_seapoint

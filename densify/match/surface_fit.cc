@@ -1,0 +1,30 @@
+#include "densify/match/surface_fit.h"
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/parallel.h"
+#include "densify/kernels/plane_kernels.h"
+
+namespace colmap_seapoint {
+
+PartialSurface FitSurface(const PartialDisparity& partial, int radius, float max_slope,
+                          int num_threads) {
+  SEAPOINT_CHECK(radius >= 1 && radius <= plane::kMaxRadius);
+  const SampleGrid& grid = partial.grid;
+  PartialSurface surface;
+  surface.grid = grid;
+  surface.disparity.resize(grid.Size());
+  surface.slope_x.resize(grid.Size());
+  surface.slope_y.resize(grid.Size());
+  surface.support.resize(grid.Size());
+  const float tolerance = max_slope * static_cast<float>(radius * grid.step);
+  constexpr int kBand = 16;  // rows a task
+  ParallelFor(num_threads, (grid.height + kBand - 1) / kBand, [&](int64_t band) {
+    const int begin = static_cast<int>(band) * kBand, end = std::min(grid.height, begin + kBand);
+    plane::FitRows({partial.disparity.data(), grid.width, grid.height}, begin, end, radius,
+                   tolerance, 1.0f / static_cast<float>(grid.step), surface.disparity.data(),
+                   surface.slope_x.data(), surface.slope_y.data(), surface.support.data());
+  });
+  return surface;
+}
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,78 @@
+// The completion pass (ours): after the sequence, what two pictures of any strip see and no pair
+// has covered is densified from the best pair for it. Most of it is the rim of the survey, which
+// only (V, V + 2) or neighbouring strips see twice.
+#pragma once
+
+#include <vector>
+
+#include "colmap_seapoint/base/sparse_model.h"
+#include "densify/densify_pair.h"
+#include "densify/overlap/coverage.h"
+
+namespace colmap_seapoint {
+
+// For every position, the positions that share triangulated points with it, most shared first, ties
+// by position; at most 12. O(track elements squared per point).
+std::vector<std::vector<int>> CovisiblePictures(const SparseModel& model,
+                                                const std::vector<int>& order);
+
+// Median angle between the rays of the points that both pictures see, degrees; 0 when they share
+// none.
+double MedianParallaxDeg(const SparseModel& model, const PosedImage& image1,
+                         const PosedImage& image2);
+
+// Share of the points that a picture sees which project into another; 0 when it sees none.
+double SharedShare(const SparseModel& model, const PosedImage& image, const View& other);
+
+struct CompletionCandidate {
+  int position;
+  View view;
+};
+
+// Range of the surface in every cell of the picture: what is reconstructed there, and elsewhere
+// that of the nearest cell that is reconstructed or holds a triangulated point. All 0 when there is
+// neither. (The mapper drops points that only two pictures see, so the rim, which matters most
+// here, has none of its own.)
+std::vector<double> PredictRanges(const SparseModel& model, const PosedImage& image,
+                                  const View& view, const ViewCoverage& coverage);
+
+// Surface that completion pairs were to cover and could not, after one and after two tries: hidden,
+// too steep, without texture. What failed twice is not tried again, from whatever picture.
+struct GivenUp {
+  std::vector<PackedFootprint> once, twice;
+};
+
+// A picture as the completion pass sees it, cell by cell.
+struct CompletionView {
+  ViewCoverage coverage;
+  std::vector<double> predicted_range;  // PredictRanges
+  std::vector<uint8_t> tries;           // how often its surface was tried in vain, 0 .. 2
+};
+
+// Without the predicted ranges.
+CompletionView LookAt(const View& view, const CellGrid& cells,
+                      const std::vector<PackedFootprint>& footprints, const GivenUp& given_up);
+
+// The pair that completes most, and the cells it is to leave alone: all others than those it is
+// for.
+struct CompletionTarget {
+  int partner = -1;  // position
+  std::vector<uint8_t> closed;
+};
+
+// The candidate that sees most of the picture's uncovered cells, at their predicted ranges, with a
+// baseline that can measure depth; none when that is less than kMinGain of the picture. Cells tried
+// once are worth no pair of their own, but are tried again along with others.
+CompletionTarget SelectCompletionPartner(const View& view, const CompletionView& seen,
+                                         const std::vector<CompletionCandidate>& candidates);
+
+// Growth goes on where it once stopped: a seed in every uncovered cell that touches a covered one,
+// at its predicted range.
+std::vector<PixelPair> SeedsAlongRim(const View& view, const View& partner,
+                                     const CompletionView& seen);
+
+// After the pair: `filled` (empty: nothing) tells which of the target's cells it failed to cover.
+void NoteFailures(const View& view, const CompletionTarget& target,
+                  const std::vector<float>& filled, CompletionView* seen, GivenUp* given_up);
+
+}  // namespace colmap_seapoint

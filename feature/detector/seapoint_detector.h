@@ -1,0 +1,48 @@
+// The SeaPoint detector (paper 2.3, Figure 4): Harris measure of every pixel, remapped to 0..255 by
+// the map's own extremes; non-maximum suppression in a radius; adaptive threshold from the
+// cumulative histogram; (ours) measures balanced against uneven light, a quadratic sub-pixel fit.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "colmap_seapoint/base/features.h"
+#include "colmap_seapoint/base/image.h"
+#include "colmap_seapoint/base/options.h"
+#include "feature/detector/adaptive_threshold.h"
+
+namespace colmap_seapoint {
+
+struct SeaPointExtractionOptions {
+  int min_num_features = 2500;
+  int max_num_features = 3000;
+  int num_levels = 1;
+  double smoothing_sigma = 1.5;
+  int window_size = 7;
+  double harris_k = 0.04;
+  int nms_radius = 0;
+  std::string descriptor = "rbrief";  // or "sift"; see Features
+  double light_balance = 0.5;
+
+  void Bind(OptionTable* table);
+  // Rules between options: "" or the whole sentence. Ranges are the table's.
+  std::string Check() const;
+};
+
+struct DetectionSummary {
+  ThresholdStatus status = ThresholdStatus::kFlat;  // of the finest level
+  double threshold = 0;                             // on the 0..255 map of the finest level
+  int num_rounds = 0;                               // histograms explored on the finest level
+  int num_local_maxima = 0;  // candidates after non-maximum suppression, finest level
+};
+
+// One pyramid level. Points in the coordinates of `picture` (scale 1, orientation 0), strongest
+// first, ties in raster order; none nearer to the border than `border` pixels, none where `mask`
+// (empty, or of the picture's size) is 0. num_threads (-1: all cores) share the picture in bands of
+// rows; the points are the same for any number. About 3 ms of CPU a megapixel with AVX2.
+std::vector<SeaPoint> DetectSeaPoints(const GrayImage& picture, const GrayImage& mask,
+                                      const SeaPointExtractionOptions& options, int border,
+                                      DetectionSummary* summary, int num_threads = 1);
+
+}  // namespace colmap_seapoint

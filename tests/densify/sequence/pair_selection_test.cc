@@ -1,0 +1,132 @@
+#include "densify/sequence/pair_selection.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace colmap_seapoint {
+namespace {
+
+// Overlap of pictures that advance by (100 - forward_percent) % of their length each.
+std::function<double(int)> Advancing(int first, int forward_percent) {
+  return [=](int position) {
+    return std::max(0, 100 - (100 - forward_percent) * (position - first)) / 100.0;
+  };
+}
+
+// The pairs that a whole sequence is made of, second picture always the next one.
+std::vector<int> FirstPictures(int num_pictures, double max_overlap, int forward_percent) {
+  std::vector<int> firsts;
+  int first = 0;
+  while (first + 1 < num_pictures) {
+    firsts.push_back(first);
+    first =
+        SelectNextFirst(first + 1, num_pictures, max_overlap, Advancing(first, forward_percent));
+  }
+  return firsts;
+}
+
+TEST(SelectNextFirstTest, EightyPercent) {
+  // V + 2 overlaps V by 60 %: not above the limit.
+  EXPECT_EQ(FirstPictures(9, 0.6, 80), (std::vector<int>{0, 2, 4, 6, 7}));
+  EXPECT_EQ(FirstPictures(9, 0.59, 80), (std::vector<int>{0, 3, 6, 7}));
+}
+
+TEST(SelectNextFirstTest, SixtyPercent) {
+  // V + 2 overlaps by 20 %, but V + 3 not at all: the strip between would be lost.
+  EXPECT_EQ(FirstPictures(6, 0.6, 60), (std::vector<int>{0, 1, 2, 3, 4}));
+  // With 70 % V + 3 still touches V by 10 %.
+  EXPECT_EQ(FirstPictures(7, 0.6, 70), (std::vector<int>{0, 2, 4, 5}));
+}
+
+TEST(SelectNextFirstTest, StationaryCameraIsPassedOver) {
+  auto overlap = [](int position) { return position < 8 ? 0.99 : 0.5; };
+  EXPECT_EQ(SelectNextFirst(1, 20, 0.6, overlap), 8);
+  // Stationary to the end: the last two pictures.
+  EXPECT_EQ(SelectNextFirst(1, 20, 0.6, [](int) { return 1.0; }), 18);
+}
+
+TEST(SelectNextFirstTest, EndOfTheSequence) {
+  auto no_overlap = [](int) { return 0.0; };
+  EXPECT_EQ(SelectNextFirst(9, 10, 0.6, no_overlap), 10);
+  EXPECT_EQ(SelectNextFirst(8, 10, 0.6, no_overlap), 8);
+  EXPECT_EQ(SelectNextFirst(1, 2, 0.6, no_overlap), 2);
+}
+
+TEST(SelectNextFirstTest, AsksForNoMoreThanItNeeds) {
+  std::vector<int> asked;
+  auto overlap = [&](int position) {
+    asked.push_back(position);
+    return position < 4 ? 0.8 : 0.4;
+  };
+  EXPECT_EQ(SelectNextFirst(1, 10, 0.6, overlap), 4);
+  for (const int position : {2, 3, 4, 5}) {
+    EXPECT_LE(std::count(asked.begin(), asked.end(), position), 1);
+  }
+  EXPECT_LE(*std::max_element(asked.begin(), asked.end()), 5);
+}
+
+// Whatever the overlaps are, every step goes on and the sequence ends with its last pair.
+TEST(SelectNextFirstTest, AlwaysAdvancesAndAlwaysEnds) {
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int trial = 0; trial < 3000; ++trial) {
+    const int num_pictures = 2 + static_cast<int>(generator() % 15);
+    const double max_overlap = unit(generator);
+    int first = 0, second = 1;
+    int num_steps = 0;
+    while (true) {
+      second = std::min(num_pictures - 1, first + 1 + static_cast<int>(generator() % 4));
+      const int next = SelectNextFirst(second, num_pictures, max_overlap, [&](int position) {
+        EXPECT_TRUE(position > second && position < num_pictures);
+        return unit(generator);
+      });
+      ASSERT_GT(next, first);
+      ASSERT_LE(next, num_pictures);
+      if (next == num_pictures) break;
+      ASSERT_LE(next, num_pictures - 2);
+      first = next;
+      ASSERT_LT(++num_steps, num_pictures);
+    }
+    EXPECT_EQ(second, num_pictures - 1);
+  }
+}
+
+// Paper 4: the simultaneous picture completes the pair, so the last picture can start one.
+TEST(SelectNextStereoFirstTest, FirstBelowTheLimit) {
+  EXPECT_EQ(SelectNextStereoFirst(0, 9, 0.6, Advancing(0, 80)), 2);
+  EXPECT_EQ(SelectNextStereoFirst(0, 9, 0.59, Advancing(0, 80)), 3);
+  EXPECT_EQ(SelectNextStereoFirst(0, 9, 0.6, Advancing(0, 50)), 1);
+  EXPECT_EQ(SelectNextStereoFirst(7, 9, 0.6, [](int) { return 0.99; }), 8);
+  EXPECT_EQ(SelectNextStereoFirst(2, 9, 0.6, [](int) { return 0.99; }), 8);
+  EXPECT_EQ(SelectNextStereoFirst(8, 9, 0.6, [](int) { return 0.5; }), 9);
+}
+
+TEST(SelectNextStereoFirstTest, NoStripIsLostBetweenTwoPairs) {
+  const auto jump = [](int position) { return position < 5 ? 0.8 : 0.05; };
+  EXPECT_EQ(SelectNextStereoFirst(2, 9, 0.6, jump), 4);
+  EXPECT_EQ(SelectNextStereoFirst(4, 9, 0.6, jump), 5);
+  EXPECT_EQ(SelectNextStereoFirst(2, 6, 0.6, jump), 4);
+}
+
+SeaPoint At(double x, double y) {
+  SeaPoint point;
+  point.x = static_cast<float>(x);
+  point.y = static_cast<float>(y);
+  return point;
+}
+
+TEST(MeanMotionTest, MeanNormInSharesOfTheLongerSide) {
+  const std::vector<SeaPoint> points1 = {At(10, 10), At(500, 300), At(3, 3)};
+  const std::vector<SeaPoint> points2 = {At(500, 310), At(13, 14), At(9, 9)};
+  const FeatureMatches matches = {{0, 1}, {1, 0}};  // 3 by 4, and 0 by 10
+  EXPECT_NEAR(MeanMotion(points1, points2, matches, 1000), (5 + 10) / 2.0 / 1000, 1e-9);
+  EXPECT_EQ(MeanMotion(points1, points2, {}, 1000), 0);
+  EXPECT_EQ(MeanMotion(points1, points1, {{0, 0}, {1, 1}}, 1000), 0);
+}
+
+}  // namespace
+}  // namespace colmap_seapoint

@@ -1,0 +1,143 @@
+// Databases that other versions of COLMAP wrote: we add to them and change nothing.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "tests/io/test_database.h"
+
+namespace colmap_seapoint {
+namespace {
+
+using Mode = ColmapDatabase::Mode;
+
+std::map<std::string, std::vector<std::string>> AllRows(const std::filesystem::path& path) {
+  std::map<std::string, std::vector<std::string>> rows;
+  for (const std::string& table :
+       Query(path,
+             "SELECT name FROM sqlite_master WHERE type = 'table' AND "
+             "name NOT LIKE 'sqlite_%' AND name NOT LIKE 'seapoint_%'")) {
+    rows[table] = Query(path, "SELECT * FROM " + table + " ORDER BY 1");
+  }
+  return rows;
+}
+
+void AddImageWithMatches(const std::filesystem::path& path) {
+  ColmapDatabase db(path, Mode::kReadWrite);
+  const auto before = db.ReadImages();
+  const uint32_t camera_id = db.AddCamera(MakeCamera(CameraModel::kOpenCV, 700, 640, 480));
+  const uint32_t c = db.AddImage("new/c.jpg", camera_id);
+  const uint32_t d = db.AddImage("new/d.jpg", camera_id);
+  const uint32_t e = db.AddImage("new/e.jpg", before.front().camera_id);
+  for (const uint32_t image_id : {c, d, e}) {
+    db.WriteFeatures(image_id, MakeFeatures(30, image_id), "print");
+  }
+  db.WriteMatches(d, c, {{1, 2}}, MakeGeometry({{1, 2}}));
+  db.WriteMatches(c, before.front().image_id, {{1, 0}}, MakeGeometry({{1, 0}}));
+  ExpectSameFeatures(db.ReadFeatures(c), MakeFeatures(30, c));
+  EXPECT_EQ(db.ReadMatches({c, d}), (FeatureMatches{{2, 1}}));
+  EXPECT_EQ(db.ReadTwoViewGeometry({before.front().image_id, c}).inliers, (FeatureMatches{{0, 1}}));
+}
+
+void ExpectOnlyAdded(const std::filesystem::path& path) {
+  const auto before = AllRows(path);
+  AddImageWithMatches(path);
+  const auto after = AllRows(path);
+  for (const auto& [table, rows] : before) {
+    ASSERT_GE(after.at(table).size(), rows.size()) << table;
+    for (const std::string& row : rows) {
+      EXPECT_EQ(std::count(after.at(table).begin(), after.at(table).end(), row), 1) << table;
+    }
+  }
+  EXPECT_EQ(after.at("images").size(), before.at("images").size() + 3);
+  EXPECT_EQ(after.at("two_view_geometries").size(), before.at("two_view_geometries").size() + 2);
+  ExpectSound(path);
+}
+
+TEST(ColmapFormats, EveryDatabaseIsReadAndOnlyAddedTo) {
+  const auto folder = DataDir() / "colmap_formats";
+  if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << "no folder " << folder;
+  int num_databases = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".db") continue;
+    const TempDir dir;
+    const auto path = dir / entry.path().filename().string();
+    std::filesystem::copy_file(entry.path(), path);
+    std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+    {
+      const ColmapDatabase db(path, Mode::kReadOnly);
+      EXPECT_EQ(db.ReadCameras().size(), 1u) << path;
+      EXPECT_EQ(db.ReadImages().size(), 12u) << path;
+      EXPECT_FALSE(db.ReadFeatures(1)) << "they are not ours";
+      const auto pairs = db.ReadVerifiedPairs();
+      EXPECT_FALSE(pairs.empty());
+      for (const ImagePair& pair : pairs) {
+        EXPECT_GT(db.ReadTwoViewGeometry(pair).inliers.size(), 0u);
+        EXPECT_GT(db.ReadMatches(pair).size(), 0u);
+      }
+    }
+    ExpectOnlyAdded(path);
+    ++num_databases;
+  }
+  EXPECT_EQ(num_databases, 3);
+}
+
+// As root this proves little: root may write into any folder.
+TEST(ColmapFormats, OpensInAFolderThatCannotBeWritten) {
+  const TempDir dir;
+  const auto folder = dir / "locked";
+  std::filesystem::create_directory(folder);
+  { ColmapDatabase db(folder / "a.db", Mode::kCreateIfMissing); }
+  std::filesystem::permissions(folder / "a.db", std::filesystem::perms::owner_read);
+  std::filesystem::permissions(
+      folder, std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  EXPECT_TRUE(ColmapDatabase(folder / "a.db", Mode::kReadOnly).ReadImages().empty());
+  std::filesystem::permissions(folder, std::filesystem::perms::owner_all);
+}
+
+// COLMAP 3.12 and later: all images have frames, or none has.
+void MakeDatabaseWithFrames(const std::filesystem::path& path) {
+  {
+    ColmapDatabase db(path, Mode::kCreateIfMissing);
+    const uint32_t camera_id = db.AddCamera(MakeCamera(CameraModel::kPinhole, 500, 640, 480));
+    const uint32_t image_id = db.AddImage("a.jpg", camera_id);
+    db.WriteFeatures(image_id, MakeFeatures(5, 1), "print");
+  }
+  Execute(path,
+          "CREATE TABLE rigs(rig_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, "
+          "ref_sensor_id INTEGER NOT NULL, ref_sensor_type INTEGER NOT NULL);"
+          "CREATE TABLE rig_sensors(rig_id INTEGER NOT NULL, sensor_id INTEGER NOT NULL, "
+          "sensor_type INTEGER NOT NULL, sensor_from_rig BLOB);"
+          "CREATE TABLE frames(frame_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, "
+          "rig_id INTEGER NOT NULL);"
+          "CREATE TABLE frame_data(frame_id INTEGER NOT NULL, data_id INTEGER NOT NULL, "
+          "sensor_id INTEGER NOT NULL, sensor_type INTEGER NOT NULL)");
+}
+
+TEST(ColmapFormats, FramesAreAllOrNothing) {
+  const TempDir dir;
+  const auto path = dir / "a.db";
+  MakeDatabaseWithFrames(path);
+  // No frames: newer COLMAPs make them by themselves.
+  ColmapDatabase(path, Mode::kReadWrite).AddImage("b.jpg", 1);
+  EXPECT_EQ(QueryOne(path, "SELECT (SELECT count(*) FROM rigs) + (SELECT count(*) FROM frames)"),
+            "0");
+  Execute(path,
+          "INSERT INTO rigs VALUES(5, 1, 0); INSERT INTO frames VALUES(8, 5), (9, 5);"
+          "INSERT INTO frame_data VALUES(8, 1, 1, 0), (9, 2, 1, 0)");
+  {
+    ColmapDatabase db(path, Mode::kReadWrite);
+    db.AddImage("c.jpg", 1);
+    const uint32_t camera_id = db.AddCamera(MakeCamera(CameraModel::kPinhole, 500, 640, 480));
+    db.AddImage("d.jpg", camera_id);
+    db.AddImage("e.jpg", camera_id);
+  }
+  EXPECT_EQ(Query(path, "SELECT * FROM rigs"), (std::vector<std::string>{"5|1|0", "6|2|0"}));
+  EXPECT_EQ(Query(path, "SELECT * FROM frames"),
+            (std::vector<std::string>{"8|5", "9|5", "10|5", "11|6", "12|6"}));
+  EXPECT_EQ(Query(path, "SELECT * FROM frame_data"),
+            (std::vector<std::string>{"8|1|1|0", "9|2|1|0", "10|3|1|0", "11|4|2|0", "12|5|2|0"}));
+}
+
+}  // namespace
+}  // namespace colmap_seapoint
