@@ -16,6 +16,9 @@
 
 namespace colmap_seapoint {
 
+// Raise it whenever the same model, pictures and options give another cloud than before.
+inline constexpr char kDensificationVersion[] = "6";
+
 // Where pictures, SeaPoints and matches come from; image_idx is the position in
 // SparseModel::images. What is stored is read; only what is not is worked out anew.
 class PictureSource {

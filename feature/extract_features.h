@@ -9,6 +9,10 @@
 
 namespace colmap_seapoint {
 
+// Raise it whenever the same picture and options give other SeaPoints than before: what an earlier
+// run stored is then found again.
+inline constexpr char kExtractionVersion[] = "3";
+
 struct ExtractedFeatures {
   Features features;
   DetectionSummary detection;  // how the threshold came about; status tells of a flat picture

@@ -16,6 +16,9 @@
 
 namespace colmap_seapoint {
 
+// Raise it whenever the same SeaPoints and options give other matches than before.
+inline constexpr char kMatchingVersion[] = "4";
+
 struct SeaPointMatchingOptions {
   HammingMatcherOptions hamming;
   SiftMatcherOptions sift;

@@ -11,6 +11,9 @@
 
 namespace colmap_seapoint {
 
+// Raise it whenever the same measurements give another similarity than before.
+inline constexpr char kScalingVersion[] = "1";
+
 // A scale bar, or the spacing of a rig's cameras.
 struct LengthMeasurement {
   double in_model = 0;        // model units

@@ -10,6 +10,9 @@
 
 namespace colmap_seapoint {
 
+// Raise it whenever the same database and options give other models than before.
+inline constexpr char kMapperVersion[] = "11";
+
 struct MapperJob {
   std::filesystem::path database_path;
   std::filesystem::path image_path;

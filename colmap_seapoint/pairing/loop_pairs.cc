@@ -16,10 +16,9 @@
 namespace colmap_seapoint {
 namespace {
 
-// Raise it whenever the same SeaPoints and options give other pairs than before.
-constexpr char kRetrievalVersion[] = "1";
 // Look-alikes of a picture that are kept for the vote along the sequence.
 constexpr size_t kNumRetrieved = 100;
+
 std::string Fingerprint(const std::vector<DatabaseImage>& sequence, const LoopSearch& search,
                         const ColmapDatabase& database) {
   std::string text = kRetrievalVersion;

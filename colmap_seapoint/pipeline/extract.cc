@@ -13,8 +13,6 @@
 namespace colmap_seapoint {
 namespace {
 
-// Raise it whenever the same picture and options give other SeaPoints than before.
-constexpr char kExtractionVersion[] = "3";
 // Before the fingerprint of a picture that could not be read: it is tried again by the next run.
 constexpr char kUnreadable[] = "unreadable:";
 constexpr char kNoSeaPoint[] = "has no SeaPoint: it shows no texture, or its mask covers it";

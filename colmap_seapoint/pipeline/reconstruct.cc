@@ -19,6 +19,7 @@
 #include "colmap_seapoint/pipeline/extract.h"
 #include "colmap_seapoint/pipeline/prepare_database.h"
 #include "colmap_seapoint/pipeline/scale_models.h"
+#include "densify/densify_sequence.h"
 #include "colmap_seapoint/pipeline/workspace_state.h"
 #include "colmap_seapoint/report/reconstruction_summary.h"
 
@@ -26,11 +27,6 @@ namespace colmap_seapoint {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Raise it whenever the same options give other results than before.
-constexpr char kMatchingVersion[] = "4";
-constexpr char kMapperVersion[] = "11";
-constexpr char kDensificationVersion[] = "6";
 
 // Pictures with a verified pair.
 std::vector<std::string> MatchedPictures(const fs::path& database_path) {

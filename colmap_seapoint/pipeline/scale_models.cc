@@ -16,8 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kScaledFolder[] = "sparse_scaled";
-// Raise it whenever the same options give other results than before.
-constexpr char kScalingVersion[] = "1";
 // The option under which a stage's report keeps its summary line.
 constexpr char kLine[] = "scaling";
 

@@ -7,6 +7,9 @@
 
 namespace colmap_seapoint {
 
+// Raise it whenever the same SeaPoints give other loop pairs than before.
+inline constexpr char kRetrievalVersion[] = "1";
+
 struct LoopCandidate {
   uint32_t first = 0, second = 0;  // places in the sequence, smaller first
   int support = 0;                 // votes above chance, those of the pairs nearby included
