@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "colmap_seapoint/base/natural_order.h"
-#include "colmap_seapoint/io/colmap/colmap_database.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -25,8 +24,7 @@ std::set<uint32_t> StronglyTied(const ColmapDatabase& database) {
 
 }  // namespace
 
-std::set<std::string> FindSecondChancePictures(const std::filesystem::path& database_path) {
-  const ColmapDatabase database(database_path, ColmapDatabase::Mode::kReadWrite);
+std::set<std::string> FindSecondChancePictures(const ColmapDatabase& database) {
   std::vector<DatabaseImage> pictures;
   for (const DatabaseImage& image : database.ReadImages()) {
     const auto features = database.ReadFeatures(image.image_id);

@@ -3,15 +3,16 @@
 // neighbours in the sequence get SI-SeaPoints (paper 4); all others keep their own.
 #pragma once
 
-#include <filesystem>
 #include <set>
 #include <string>
+
+#include "colmap_seapoint/io/colmap/colmap_database.h"
 
 namespace colmap_seapoint {
 
 // The pictures without a pair of at least 30 verified matches (what the mapper needs to register a
 // picture), and the ones before and after each of them in the order of their names. Pictures
 // without SeaPoints do not count.
-std::set<std::string> FindSecondChancePictures(const std::filesystem::path& database_path);
+std::set<std::string> FindSecondChancePictures(const ColmapDatabase& database);
 
 }  // namespace colmap_seapoint

@@ -10,16 +10,15 @@
 namespace colmap_seapoint {
 
 ModelPictures::ModelPictures(const SparseModel& model, const std::filesystem::path& image_path,
-                             const std::string& database_path,
-                             const SeaPointExtractionOptions& extraction,
+                             ColmapDatabase* database, const SeaPointExtractionOptions& extraction,
                              const SeaPointMatchingOptions& matching)
     : model_(model),
       image_path_(image_path),
+      database_(database),
       extraction_(extraction),
       matching_(matching),
       has_stored_(model.images.size()) {
-  if (database_path.empty()) return;
-  database_.emplace(database_path, ColmapDatabase::Mode::kReadOnly);
+  if (database_ == nullptr) return;
   const std::map<uint32_t, Camera> cameras = database_->ReadCameras();
   std::unordered_map<std::string, const Camera*> camera_of;  // the model's
   for (const PosedImage& image : model_.images) {

@@ -16,15 +16,15 @@
 
 namespace colmap_seapoint {
 
-// `model` outlives it. SeaPoints come from the database, by image name, where it is given and has
-// ours; those found in a reduced (or larger) picture are scaled to the model's camera (paper 4,
-// hybrid resolution), those of a picture of other proportions not used. Matches are the verified
-// ones of the database (the raw ones of a pair that nothing has verified) where it has both
-// pictures' SeaPoints and the pair.
+// `model` and `database` (nullptr: there is none) outlive it. SeaPoints come from the database, by
+// image name, where it is given and has ours; those found in a reduced (or larger) picture are
+// scaled to the model's camera (paper 4, hybrid resolution), those of a picture of other
+// proportions not used. Matches are the verified ones of the database (the raw ones of a pair that
+// nothing has verified) where it has both pictures' SeaPoints and the pair.
 class ModelPictures : public PictureSource {
  public:
   ModelPictures(const SparseModel& model, const std::filesystem::path& image_path,
-                const std::string& database_path, const SeaPointExtractionOptions& extraction,
+                ColmapDatabase* database, const SeaPointExtractionOptions& extraction,
                 const SeaPointMatchingOptions& matching);
 
   // "" when the picture's header is readable and of its camera's size; else the reason. Cheap.
@@ -55,9 +55,9 @@ class ModelPictures : public PictureSource {
 
   const SparseModel& model_;
   std::filesystem::path image_path_;
+  ColmapDatabase* database_;
   SeaPointExtractionOptions extraction_;
   SeaPointMatchingOptions matching_;
-  std::optional<ColmapDatabase> database_;
   std::unordered_map<std::string, StoredSeaPoints> in_database_;  // the model's images, by name
   std::vector<std::optional<bool>> has_stored_;                   // by image_idx, once known
 };

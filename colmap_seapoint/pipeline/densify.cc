@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 #include "colmap_seapoint/base/error.h"
@@ -152,7 +153,8 @@ void FillReport(const SparseModel& model, const SequenceReport& sequence, RunRep
 
 // The models that one run of the mapper left: each has its own frame and gets its own folder.
 CommandResult DensifySideBySide(const PartialDensifierOptions& options,
-                                const std::vector<std::filesystem::path>& models) {
+                                const std::vector<std::filesystem::path>& models,
+                                ColmapDatabase* database) {
   CommandResult result;
   int64_t num_points = 0;
   for (const std::filesystem::path& model : models) {
@@ -160,7 +162,7 @@ CommandResult DensifySideBySide(const PartialDensifierOptions& options,
     one.input_path = model.string();
     one.output_path = (std::filesystem::path(options.output_path) / model.filename()).string();
     LogInfo("Model " + one.input_path);
-    const RunReport report = DensifyModel(one);
+    const RunReport report = DensifyModel(one, database);
     num_points += report.points;
     if (report.points == 0) {
       LogWarning(one.input_path + " is left out: no pair of its pictures gave a point; see " +
@@ -203,7 +205,7 @@ void PartialDensifierOptions::Bind(OptionTable* table) {
   run.Bind(table);
 }
 
-RunReport DensifyModel(const PartialDensifierOptions& options) {
+RunReport DensifyModel(const PartialDensifierOptions& options, ColmapDatabase* database) {
   Validate(options);
   RunReport report = StartReport("partial_densifier", options, options.run);
   const std::filesystem::path output = options.output_path;
@@ -215,10 +217,10 @@ RunReport DensifyModel(const PartialDensifierOptions& options) {
     auto timer = std::make_unique<StageTimer>(&report, "partial_densifier");
     const SparseModel model = ReadModel(options);
     report.images_in = static_cast<int64_t>(model.images.size());
-    ModelPictures pictures(model, options.image_path, options.database_path, options.extraction,
+    ModelPictures pictures(model, options.image_path, database, options.extraction,
                            options.matching);
     CheckPictures(options, model, pictures);
-    if (!options.database_path.empty() && pictures.NumInDatabase() == 0) {
+    if (database != nullptr && pictures.NumInDatabase() == 0) {
       LogWarning(options.database_path +
                  " holds SeaPoints of no picture of the model: they are "
                  "found again");
@@ -249,11 +251,17 @@ RunReport DensifyModel(const PartialDensifierOptions& options) {
 }
 
 CommandResult RunPartialDensifier(const PartialDensifierOptions& options) {
+  Validate(options);
+  std::optional<ColmapDatabase> database;
+  if (!options.database_path.empty()) {
+    database.emplace(options.database_path, ColmapDatabase::Mode::kReadOnly);
+  }
+  ColmapDatabase* const open = database ? &*database : nullptr;
   if (!IsSparseModel(options.input_path)) {
     const auto models = ListModels(options.input_path);
-    if (!models.empty()) return DensifySideBySide(options, models);
+    if (!models.empty()) return DensifySideBySide(options, models, open);
   }
-  const RunReport report = DensifyModel(options);
+  const RunReport report = DensifyModel(options, open);
   if (report.points > 0) return ResultOf(report);
   throw Error(options.input_path, "no pair of its pictures gave a point",
               "see why in " + options.output_path + "/pairs.csv");

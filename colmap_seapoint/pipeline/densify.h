@@ -5,6 +5,7 @@
 
 #include "colmap_seapoint/base/options.h"
 #include "colmap_seapoint/base/run_options.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/files/run_report.h"
 #include "densify/partial_densification_options.h"
 #include "feature/detector/seapoint_detector.h"
@@ -29,10 +30,10 @@ struct PartialDensifierOptions {
 // Pictures may be larger or smaller than the model's cameras, in the same proportions (paper 4,
 // hybrid resolution): the cameras, and the database's SeaPoints, are scaled to them.
 // Writes fused.ply, fused.ply.vis, pairs.csv, units.json (the model's own) and run.json into
-// output_path. Throws Error when no
-// picture of the model is readable. When no pair gave a point, the report says 0 points, no cloud
-// is written, and pairs.csv says why.
-RunReport DensifyModel(const PartialDensifierOptions& options);
+// output_path. Throws Error when no picture of the model is readable. When no pair gave a point,
+// the report says 0 points, no cloud is written, and pairs.csv says why. `database` is the one at
+// options.database_path, open; nullptr when there is none.
+RunReport DensifyModel(const PartialDensifierOptions& options, ColmapDatabase* database);
 
 // As DensifyModel; or, when input_path is no model but holds several (what COLMAP's mapper leaves
 // in sparse/), each of them into the folder of its name below output_path.

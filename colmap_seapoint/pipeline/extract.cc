@@ -13,6 +13,7 @@
 namespace colmap_seapoint {
 namespace {
 
+constexpr char kCommand[] = "feature_extractor";
 // Before the fingerprint of a picture that could not be read: it is tried again by the next run.
 constexpr char kUnreadable[] = "unreadable:";
 constexpr char kNoSeaPoint[] = "has no SeaPoint: it shows no texture, or its mask covers it";
@@ -164,6 +165,16 @@ void ExtractAll(const Extractor& extractor, int num_threads,
   }
 }
 
+// Writes the report; throws Error when no picture is usable.
+void Finish(const FeatureExtractorOptions& options, const RunReport& report) {
+  WriteRunReport(options.database_path + "." + kCommand + ".run.json", report);
+  if (report.images_used > 0) return;
+  throw Error(options.image_path,
+              "none of its " + std::to_string(report.images_in) + " pictures can be used (" +
+                  report.left_out.front().name + ": " + report.left_out.front().reason + ")",
+              "check the pictures");
+}
+
 }  // namespace
 
 void FeatureExtractorOptions::Bind(OptionTable* table) {
@@ -177,33 +188,39 @@ void FeatureExtractorOptions::Bind(OptionTable* table) {
   run.Bind(table);
 }
 
-RunReport ExtractPictures(const FeatureExtractorOptions& options,
-                          const PrepareExtraction& prepare) {
+PictureSet ReadPictureSet(const FeatureExtractorOptions& options) {
   Validate(options);
-  RunReport report = StartReport("feature_extractor", options, options.run);
+  RunReport report = StartReport(kCommand, options, options.run);
+  PictureSet pictures;
   const auto names = ListPictures(options.image_path, options.image_list_path, &report);
+  pictures.readable = ReadHeaders(options.image_path, names, options.run.num_threads, &report);
+  pictures.num_listed = report.images_in;
+  pictures.left_out = report.left_out;
+  if (pictures.readable.empty()) Finish(options, report);
+  return pictures;
+}
+
+RunReport ExtractPictures(const FeatureExtractorOptions& options, const PictureSet& pictures,
+                          const std::set<std::string>& second_chance_names,
+                          ColmapDatabase* database) {
+  RunReport report = StartReport(kCommand, options, options.run);
+  report.images_in = pictures.num_listed;
+  report.left_out = pictures.left_out;
   {
-    StageTimer timer(&report, "feature_extractor");
-    const auto pictures = ReadHeaders(options.image_path, names, options.run.num_threads, &report);
-    if (!pictures.empty()) {
-      const Extractor extractor(options, prepare ? prepare(pictures) : std::set<std::string>());
-      ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kCreateIfMissing);
-      RefuseForeignKeypoints(options.database_path, pictures, database);
-      const auto registered = RegisterPictures(pictures, options.reader, &database, &report);
-      ExtractAll(extractor, EffectiveNumThreads(options.run.num_threads), registered, &database,
-                 &report);
-    }
+    StageTimer timer(&report, kCommand);
+    RefuseForeignKeypoints(options.database_path, pictures.readable, *database);
+    const auto registered = RegisterPictures(pictures.readable, options.reader, database, &report);
+    ExtractAll(Extractor(options, second_chance_names),
+               EffectiveNumThreads(options.run.num_threads), registered, database, &report);
   }
-  WriteRunReport(options.database_path + ".feature_extractor.run.json", report);
-  if (report.images_used > 0) return report;
-  throw Error(options.image_path,
-              "none of its " + std::to_string(report.images_in) + " pictures can be used (" +
-                  report.left_out.front().name + ": " + report.left_out.front().reason + ")",
-              "check the pictures");
+  Finish(options, report);
+  return report;
 }
 
 CommandResult RunFeatureExtractor(const FeatureExtractorOptions& options) {
-  return ResultOf(ExtractPictures(options));
+  const PictureSet pictures = ReadPictureSet(options);
+  ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kCreateIfMissing);
+  return ResultOf(ExtractPictures(options, pictures, {}, &database));
 }
 
 }  // namespace colmap_seapoint

@@ -1,7 +1,7 @@
 // feature_extractor: pictures -> cameras, images and SeaPoints in the database.
 #pragma once
 
-#include <functional>
+#include <cstdint>
 #include <set>
 #include <string>
 #include <vector>
@@ -25,18 +25,27 @@ struct FeatureExtractorOptions {
   void Bind(OptionTable* table);
 };
 
+// Of the SI-SeaPoints that pictures get which nothing ties to the others (second_chance.h).
 inline constexpr int kSecondChanceLevels = 5;
 
-// Sees the readable pictures before the database is opened (or created). Returns the names of those
-// that get SI-SeaPoints of kSecondChanceLevels levels instead (see second_chance.h).
-using PrepareExtraction =
-    std::function<std::set<std::string>(const std::vector<ReadablePicture>& pictures)>;
+// The pictures of a folder: those whose header can be read, and what became of the others.
+struct PictureSet {
+  int64_t num_listed = 0;
+  std::vector<ReadablePicture> readable;
+  std::vector<RunReport::LeftOut> left_out;
+};
 
-// Extracts the pictures whose file, mask or options changed, and leaves the others alone. Also
-// writes <database>.feature_extractor.run.json. Throws Error when no picture is usable, or when the
-// database holds keypoints of other software for one of them (nothing is written then).
-RunReport ExtractPictures(const FeatureExtractorOptions& options,
-                          const PrepareExtraction& prepare = {});
+// Of the folder, or of the list where there is one. Throws Error when no picture can be read.
+PictureSet ReadPictureSet(const FeatureExtractorOptions& options);
+
+// Extracts the pictures whose file, mask or options changed, and leaves the others alone; those in
+// `second_chance_names` get SI-SeaPoints of kSecondChanceLevels levels. Also writes
+// <database>.feature_extractor.run.json. Each picture's file is read once. Throws Error when no
+// picture is usable, or when the database holds keypoints of other software for one of them
+// (nothing is written then).
+RunReport ExtractPictures(const FeatureExtractorOptions& options, const PictureSet& pictures,
+                          const std::set<std::string>& second_chance_names,
+                          ColmapDatabase* database);
 
 CommandResult RunFeatureExtractor(const FeatureExtractorOptions& options);
 

@@ -14,15 +14,14 @@ namespace {
 
 // Validate, read, match, write and report: the same for all commands but for what is matched.
 template <typename Options, typename MatchImages>
-RunReport Match(const std::string& command, const Options& options,
-                const MatchImages& match_images) {
+RunReport Match(const std::string& command, const Options& options, const MatchImages& match_images,
+                ColmapDatabase* database) {
   RunReport report = StartReport(command, options, options.run);
   {
     StageTimer timer(&report, command);
-    ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWrite);
-    const auto images = ImagesWithSeaPoints(options.database_path, database, &report);
-    match_images(images, &database, &report);
-    WarnOfLonelyImages(database, images);
+    const auto images = ImagesWithSeaPoints(options.database_path, *database, &report);
+    match_images(images, &report);
+    WarnOfLonelyImages(*database, images);
   }
   WriteRunReport(options.database_path + "." + command + ".run.json", report);
   return report;
@@ -58,60 +57,61 @@ void SpatialMatcherOptions::Bind(OptionTable* table) {
   run.Bind(table);
 }
 
-RunReport MatchSequentially(const SequentialMatcherOptions& options) {
+// The next picture overlaps anyway; the others may be round a corner already.
+RunReport MatchSequentially(const SequentialMatcherOptions& options, ColmapDatabase* database) {
   const SequentialPairOptions& choice = options.pairs;
-  return Match("sequential_matcher", options,
-               [&](std::vector<DatabaseImage> images, ColmapDatabase* database, RunReport* report) {
-                 SortNaturally(&images);
-                 std::vector<ImagePair> further;
-                 if (choice.loop_detection) {
-                   StageTimer timer(report, "loop_detection");
-                   further = FindLoopPairs(
-                       images, {choice.overlap, choice.loop_detection_num_images, options.run},
-                       database);
-                 }
-                 // The next picture overlaps anyway; the others may be round a corner already.
-                 const auto next = SequentialPairs(images, 1);
-                 const std::set<ImagePair> is_next(next.begin(), next.end());
-                 const auto sequential = SequentialPairs(images, choice.overlap);
-                 std::copy_if(sequential.begin(), sequential.end(), std::back_inserter(further),
-                              [&](const ImagePair& pair) { return is_next.count(pair) == 0; });
-                 MatchPairs(next, options.matching, 0, options.run.num_threads, database, report);
-                 MatchPairs(further, DemandingOptions(options.matching), kMinOverlapShare,
-                            options.run.num_threads, database, report);
-               });
+  const auto match_images = [&](std::vector<DatabaseImage> images, RunReport* report) {
+    SortNaturally(&images);
+    std::vector<ImagePair> further;
+    if (choice.loop_detection) {
+      StageTimer timer(report, "loop_detection");
+      further = FindLoopPairs(
+          images, {choice.overlap, choice.loop_detection_num_images, options.run}, database);
+    }
+    const auto next = SequentialPairs(images, 1);
+    const std::set<ImagePair> is_next(next.begin(), next.end());
+    const auto sequential = SequentialPairs(images, choice.overlap);
+    std::copy_if(sequential.begin(), sequential.end(), std::back_inserter(further),
+                 [&](const ImagePair& pair) { return is_next.count(pair) == 0; });
+    MatchPairs(next, options.matching, 0, options.run.num_threads, database, report);
+    MatchPairs(further, DemandingOptions(options.matching), kMinOverlapShare,
+               options.run.num_threads, database, report);
+  };
+  return Match("sequential_matcher", options, match_images, database);
 }
 
-RunReport MatchExhaustively(const ExhaustiveMatcherOptions& options) {
-  return Match(
-      "exhaustive_matcher", options,
-      [&](const std::vector<DatabaseImage>& images, ColmapDatabase* database, RunReport* report) {
-        MatchPairs(ExhaustivePairs(images), options.matching, kMinOverlapShare,
-                   options.run.num_threads, database, report);
-      });
+RunReport MatchExhaustively(const ExhaustiveMatcherOptions& options, ColmapDatabase* database) {
+  const auto match_images = [&](const std::vector<DatabaseImage>& images, RunReport* report) {
+    MatchPairs(ExhaustivePairs(images), options.matching, kMinOverlapShare, options.run.num_threads,
+               database, report);
+  };
+  return Match("exhaustive_matcher", options, match_images, database);
 }
 
-RunReport MatchSpatially(const SpatialMatcherOptions& options) {
-  return Match("spatial_matcher", options,
-               [&](std::vector<DatabaseImage> images, ColmapDatabase* database, RunReport* report) {
-                 SortNaturally(&images);
-                 const auto placed = PlaceImages(images, options.pairs, options.image_path,
-                                                 options.database_path, *database, report);
-                 MatchPairs(SpatialPairs(placed, options.pairs), options.matching, kMinOverlapShare,
-                            options.run.num_threads, database, report);
-               });
+RunReport MatchSpatially(const SpatialMatcherOptions& options, ColmapDatabase* database) {
+  const auto match_images = [&](std::vector<DatabaseImage> images, RunReport* report) {
+    SortNaturally(&images);
+    const auto placed = PlaceImages(images, options.pairs, options.image_path,
+                                    options.database_path, *database, report);
+    MatchPairs(SpatialPairs(placed, options.pairs), options.matching, kMinOverlapShare,
+               options.run.num_threads, database, report);
+  };
+  return Match("spatial_matcher", options, match_images, database);
 }
 
 CommandResult RunSequentialMatcher(const SequentialMatcherOptions& options) {
-  return ResultOf(MatchSequentially(options));
+  ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWrite);
+  return ResultOf(MatchSequentially(options, &database));
 }
 
 CommandResult RunExhaustiveMatcher(const ExhaustiveMatcherOptions& options) {
-  return ResultOf(MatchExhaustively(options));
+  ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWrite);
+  return ResultOf(MatchExhaustively(options, &database));
 }
 
 CommandResult RunSpatialMatcher(const SpatialMatcherOptions& options) {
-  return ResultOf(MatchSpatially(options));
+  ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWrite);
+  return ResultOf(MatchSpatially(options, &database));
 }
 
 }  // namespace colmap_seapoint

@@ -43,10 +43,11 @@ struct SpatialMatcherOptions {
 };
 
 // Matches and verifies every pair that has no row yet, in the order given; also writes
-// <database>.<command>.run.json. Throws Error when no picture has SeaPoints.
-RunReport MatchSequentially(const SequentialMatcherOptions& options);
-RunReport MatchExhaustively(const ExhaustiveMatcherOptions& options);
-RunReport MatchSpatially(const SpatialMatcherOptions& options);
+// <database>.<command>.run.json. `database` is the one at options.database_path, open for writing.
+// Throws Error when no picture has SeaPoints.
+RunReport MatchSequentially(const SequentialMatcherOptions& options, ColmapDatabase* database);
+RunReport MatchExhaustively(const ExhaustiveMatcherOptions& options, ColmapDatabase* database);
+RunReport MatchSpatially(const SpatialMatcherOptions& options, ColmapDatabase* database);
 
 CommandResult RunSequentialMatcher(const SequentialMatcherOptions& options);
 CommandResult RunExhaustiveMatcher(const ExhaustiveMatcherOptions& options);

@@ -1,9 +1,9 @@
+#include "colmap_seapoint/pipeline/reconstruct_options.h"
+
 #include <filesystem>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/pictures/read_rig.h"
-#include "colmap_seapoint/pipeline/reconstruct.h"
-#include "colmap_seapoint/pipeline/scale_models.h"
 
 namespace colmap_seapoint {
 
@@ -60,6 +60,12 @@ void AutomaticReconstructorOptions::Check() const {
   }
   CheckRigFolders(rig, image_path);
   CheckScaleTables(scale);
+}
+
+bool FindsLens(const AutomaticReconstructorOptions& options) {
+  if (!options.reader.camera_params.empty()) return false;
+  const auto refinement = options.mapper.lower_bound("Mapper.ba_refine");
+  return refinement == options.mapper.end() || refinement->first.rfind("Mapper.ba_refine", 0) != 0;
 }
 
 }  // namespace colmap_seapoint

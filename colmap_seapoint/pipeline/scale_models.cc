@@ -9,89 +9,84 @@
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/files/content_hash.h"
 #include "colmap_seapoint/io/files/model_units.h"
+#include "colmap_seapoint/io/files/run_report_json.h"
 
 namespace colmap_seapoint {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char kScaledFolder[] = "sparse_scaled";
-// The option under which a stage's report keeps its summary line.
-constexpr char kLine[] = "scaling";
-
-std::string Fingerprint(const ModelScalerOptions& scaler, const std::string& mapper_fingerprint) {
+std::string Inputs(const ModelScalerOptions& scaler, const std::string& mapper_fingerprint) {
   const ScaleSources& sources = scaler.sources;
-  std::string text = kScalingVersion + mapper_fingerprint + "," + scaler.rig + "," +
+  std::string text = mapper_fingerprint + "," + scaler.rig + "," +
                      std::to_string(scaler.run.random_seed) + "," +
                      OptionsFingerprint(OptionValues(sources));
   for (const std::string& path :
        {sources.scale_bars_path, sources.targets_path, sources.positions_path}) {
     if (!path.empty()) text += DescribeInput(path, path).hash + ",";
   }
-  return HashText(text);
+  return text;
 }
 
-std::string LineOf(const RunReport& report) {
-  for (const auto& [name, value] : report.options) {
-    if (name == kLine) return value;
-  }
-  return "";
-}
-
-// The stage of one model; its report when it is done already.
-RunReport ScaleOnce(const ModelScalerOptions& scaler, const std::string& stage,
-                    const std::string& fingerprint, WorkspaceState* state) {
+// The stage of one model.
+ScaledModel ScaleOnce(const ModelScalerOptions& scaler, const Stage& stage, WorkspaceState* state) {
   const fs::path output = scaler.output_path;
-  if (const auto done = state->ReadIfDone(stage, fingerprint);
-      done && IsSparseModel(output) && fs::exists(output / kUnitsFile)) {
-    LogInfo("The scaled model in " + output.string() + " is there already");
-    return *done;
-  }
-  state->Forget(stage);
-  std::error_code ignored;
-  fs::remove_all(output, ignored);
-  ScaledModel scaled = ScaleModel(scaler);
-  scaled.report.options.emplace_back(kLine, scaled.line);
-  state->Finish(stage, fingerprint, scaled.report);
-  return scaled.report;
+  return RunStage<ScaledModel>(state, stage, [&]() -> StageOutput<ScaledModel> {
+    std::error_code ignored;
+    fs::remove_all(output, ignored);
+    ScaledModel scaled = ScaleModel(scaler);
+    std::vector<fs::path> outputs;
+    for (const auto& entry : fs::directory_iterator(output)) outputs.push_back(entry.path());
+    return {std::move(scaled), outputs};
+  });
 }
 
-void RemoveStale(const fs::path& folder, size_t first, WorkspaceState* state) {
-  std::error_code ignored;
-  for (size_t k = first; state->Read("scale_" + std::to_string(k)); ++k) {
-    state->Forget("scale_" + std::to_string(k));
-    fs::remove_all(folder / std::to_string(k), ignored);
-  }
-  if (first == 0) fs::remove(folder, ignored);  // if nothing else is in it
+void SetScale(const ScaledModel& scaled, const fs::path& path, const std::string& fingerprint,
+              ModelSummary* model) {
+  const auto units = ReadModelUnits(path);
+  model->path = path;
+  model->units = UnitsText(units);
+  model->units_word = UnitsWord(units);
+  model->scaling = scaled.line;
+  model->scaling_fingerprint = fingerprint;
 }
 
 }  // namespace
 
-RunReport ScaleAllModels(ModelScalerOptions scaler, const fs::path& workspace,
+void to_json(nlohmann::ordered_json& json, const ScaledModel& scaled) {
+  json = {{"report", scaled.report}, {"text", scaled.text}, {"line", scaled.line}};
+}
+
+void from_json(const nlohmann::ordered_json& json, ScaledModel& scaled) {
+  scaled = {json.at("report").get<RunReport>(), json.at("text"), json.at("line")};
+}
+
+RunReport ScaleAllModels(ModelScalerOptions scaler, const Workspace& workspace,
                          const std::string& mapper_fingerprint, WorkspaceState* state,
                          std::vector<ModelSummary>* models) {
   RunReport report;
-  const fs::path folder = workspace / kScaledFolder;
-  RemoveStale(folder, scaler.sources.Any() ? models->size() : 0, state);
-  if (!scaler.sources.Any()) return report;
-  const std::string fingerprint = Fingerprint(scaler, mapper_fingerprint);
+  RemoveStaleStages("scale_", scaler.sources.Any() ? models->size() : 0, workspace.scaled, state);
+  if (!scaler.sources.Any()) {
+    std::error_code ignored;
+    fs::remove(workspace.scaled, ignored);  // if nothing else is in it
+    return report;
+  }
+  Stage stage = {"", kScalingVersion, Inputs(scaler, mapper_fingerprint), ""};
   std::optional<Error> first_error;
   size_t num_scaled = 0;
   std::map<std::string, std::vector<RunReport::LeftOut>> left_out;  // by name
   for (ModelSummary& model : *models) {
-    scaler.input_path = (workspace / "sparse" / model.name).string();
-    scaler.output_path = (folder / model.name).string();
+    scaler.input_path = model.path.string();
+    scaler.output_path = (workspace.scaled / model.name).string();
+    stage.name = "scale_" + model.name;
+    stage.done = "The scaled model in " + scaler.output_path + " is there already";
     try {
-      const RunReport part = ScaleOnce(scaler, "scale_" + model.name, fingerprint, state);
+      const ScaledModel scaled = ScaleOnce(scaler, stage, state);
+      const RunReport& part = scaled.report;
       report.stages.insert(report.stages.end(), part.stages.begin(), part.stages.end());
       report.stages.back().name += " " + model.name;
       for (const auto& item : part.left_out) left_out[item.name].push_back(item);
-      model.path = scaler.output_path;
-      const auto units = ReadModelUnits(model.path);
-      model.units = UnitsText(units);
-      model.units_word = UnitsWord(units);
-      model.scaling = LineOf(part);
-      model.scaling_fingerprint = fingerprint;
+      SetScale(scaled, scaler.output_path, StageFingerprint(stage), &model);
       ++num_scaled;
     } catch (const Error& error) {
       if (!first_error) first_error = error;

@@ -1,12 +1,12 @@
 // The models of automatic_reconstructor, brought into metres before they are densified.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "colmap_seapoint/pipeline/scale.h"
-#include "colmap_seapoint/pipeline/workspace_state.h"
+#include "colmap_seapoint/pipeline/stage_runner.h"
+#include "colmap_seapoint/pipeline/workspace.h"
 #include "colmap_seapoint/report/reconstruction_summary.h"
 
 namespace colmap_seapoint {
@@ -15,7 +15,7 @@ namespace colmap_seapoint {
 // sources; what an earlier run has done already is taken as it is. Sets path, units and scaling of
 // the models. A model that cannot be scaled stays as it is, and is named in the report; throws
 // Error when none can. Without sources, removes what earlier runs with some left in sparse_scaled.
-RunReport ScaleAllModels(ModelScalerOptions scaler, const std::filesystem::path& workspace,
+RunReport ScaleAllModels(ModelScalerOptions scaler, const Workspace& workspace,
                          const std::string& mapper_fingerprint, WorkspaceState* state,
                          std::vector<ModelSummary>* models);
 

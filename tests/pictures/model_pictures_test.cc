@@ -35,12 +35,16 @@ class ModelPicturesTest : public testing::Test {
     }
   }
 
-  ModelPictures Open() const { return ModelPictures(model_, dir_.Path(), path_.string(), {}, {}); }
+  ModelPictures Open() {
+    database_.emplace(path_, ColmapDatabase::Mode::kReadOnly);
+    return ModelPictures(model_, dir_.Path(), &*database_, {}, {});
+  }
 
   TempDir dir_;
   std::filesystem::path path_;
   std::map<std::string, uint32_t> ids_;
   SparseModel model_;
+  std::optional<ColmapDatabase> database_;
 };
 
 TEST_F(ModelPicturesTest, VerifiedMatchesInTheOrderAskedFor) {
@@ -63,7 +67,7 @@ TEST_F(ModelPicturesTest, SeaPointsOfTheDatabaseOrNone) {
   ExpectSameFeatures(pictures.ReadSeaPoints(1), MakeFeatures(9, ids_["b"]));
   EXPECT_EQ(pictures.ReadSeaPoints(4), std::nullopt);
   EXPECT_EQ(pictures.NumInDatabase(), 4);
-  ModelPictures without(model_, dir_.Path(), "", {}, {});
+  ModelPictures without(model_, dir_.Path(), nullptr, {}, {});
   EXPECT_EQ(without.ReadSeaPoints(1), std::nullopt);
   EXPECT_EQ(without.ReadMatches(0, 1), std::nullopt);
 }

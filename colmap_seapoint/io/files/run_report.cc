@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <system_error>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/content_hash.h"
+#include "colmap_seapoint/io/files/run_report_json.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -38,33 +40,6 @@ uint64_t OwnPeakRssBytes() {
   return 1024 * static_cast<uint64_t>(usage.ru_maxrss);
 }
 
-RunReport FromJson(const Json& json) {
-  RunReport report;
-  report.version = json.at("version").get<std::string>();
-  report.fingerprint = json.value("fingerprint", "");
-  report.command = json.at("command").get<std::string>();
-  for (const auto& option : json.at("options").items()) {
-    report.options.emplace_back(option.key(), option.value().get<std::string>());
-  }
-  report.seed = json.at("seed").get<int>();
-  report.num_threads = json.at("num_threads").get<int>();
-  report.images_in = json.at("images_in").get<int64_t>();
-  report.images_used = json.at("images_used").get<int64_t>();
-  for (const Json& item : json.at("left_out")) {
-    report.left_out.push_back({item.at("name"), item.at("reason")});
-  }
-  report.pairs = json.at("pairs").get<int64_t>();
-  report.points = json.at("points").get<int64_t>();
-  report.units = json.value("units", "");
-  for (const Json& item : json.at("stages")) {
-    report.stages.push_back({item.at("name"), item.at("wall_seconds"), item.at("cpu_seconds")});
-  }
-  for (const Json& item : json.at("inputs")) {
-    report.inputs.push_back({item.at("name"), item.at("size"), item.at("hash")});
-  }
-  return report;
-}
-
 }  // namespace
 
 std::string OptionsFingerprint(const OptionList& options) {
@@ -76,6 +51,15 @@ std::string OptionsFingerprint(const OptionList& options) {
 void LeaveOut(const std::string& name, const std::string& reason, RunReport* report) {
   LogWarning(name + " is left out: " + reason);
   report->left_out.push_back({name, reason});
+}
+
+void AddPart(const RunReport& part, RunReport* report) {
+  report->stages.insert(report->stages.end(), part.stages.begin(), part.stages.end());
+  std::set<std::string> named;
+  for (const auto& left_out : report->left_out) named.insert(left_out.name);
+  for (const auto& left_out : part.left_out) {
+    if (named.insert(left_out.name).second) report->left_out.push_back(left_out);
+  }
 }
 
 CommandResult ResultOf(const RunReport& report) { return {report.left_out.empty(), ""}; }
@@ -109,45 +93,74 @@ RunReport::Input DescribeInput(const std::string& name, const std::filesystem::p
   return input;
 }
 
-void WriteRunReport(const std::filesystem::path& path, const RunReport& report) {
-  Json json;
+void to_json(Json& json, const RunReport::Stage& stage) {
+  json = {{"name", stage.name},
+          {"wall_seconds", stage.wall_seconds},
+          {"cpu_seconds", stage.cpu_seconds}};
+}
+
+void from_json(const Json& json, RunReport::Stage& stage) {
+  stage = {json.at("name"), json.at("wall_seconds"), json.at("cpu_seconds")};
+}
+
+void to_json(Json& json, const RunReport::LeftOut& left_out) {
+  json = {{"name", left_out.name}, {"reason", left_out.reason}};
+}
+
+void from_json(const Json& json, RunReport::LeftOut& left_out) {
+  left_out = {json.at("name"), json.at("reason")};
+}
+
+void to_json(Json& json, const RunReport::Input& input) {
+  json = {{"name", input.name}, {"size", input.size}, {"hash", input.hash}};
+}
+
+void from_json(const Json& json, RunReport::Input& input) {
+  input = {json.at("name"), json.at("size"), json.at("hash")};
+}
+
+void to_json(Json& json, const RunReport& report) {
+  json = Json::object();
   json["version"] = report.version;
   json["command"] = report.command;
-  if (!report.fingerprint.empty()) json["fingerprint"] = report.fingerprint;
   json["options"] = Json::object();
   for (const auto& [name, value] : report.options) json["options"][name] = value;
   json["seed"] = report.seed;
   json["num_threads"] = report.num_threads;
   json["images_in"] = report.images_in;
   json["images_used"] = report.images_used;
-  json["left_out"] = Json::array();
-  for (const auto& [name, reason] : report.left_out) {
-    json["left_out"].push_back({{"name", name}, {"reason", reason}});
-  }
+  json["left_out"] = report.left_out;
   json["pairs"] = report.pairs;
   json["points"] = report.points;
   if (!report.units.empty()) json["units"] = report.units;
-  json["stages"] = Json::array();
-  for (const auto& [name, wall_seconds, cpu_seconds] : report.stages) {
-    json["stages"].push_back(
-        {{"name", name}, {"wall_seconds", wall_seconds}, {"cpu_seconds", cpu_seconds}});
-  }
-  json["peak_rss_bytes"] = PeakRssBytes();
-  json["inputs"] = Json::array();
-  for (const auto& [name, size, hash] : report.inputs) {
-    json["inputs"].push_back({{"name", name}, {"size", size}, {"hash", hash}});
-  }
-  WriteTextFile(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  json["stages"] = report.stages;
+  json["inputs"] = report.inputs;
 }
 
-std::optional<RunReport> ReadRunReport(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  if (!file) return std::nullopt;
-  try {
-    return FromJson(Json::parse(file));
-  } catch (const Json::exception&) {
-    return std::nullopt;
+void from_json(const Json& json, RunReport& report) {
+  report.version = json.at("version");
+  report.command = json.at("command");
+  for (const auto& option : json.at("options").items()) {
+    report.options.emplace_back(option.key(), option.value().get<std::string>());
   }
+  report.seed = json.at("seed");
+  report.num_threads = json.at("num_threads");
+  report.images_in = json.at("images_in");
+  report.images_used = json.at("images_used");
+  report.left_out = json.at("left_out").get<std::vector<RunReport::LeftOut>>();
+  report.pairs = json.at("pairs");
+  report.points = json.at("points");
+  report.units = json.value("units", "");
+  report.stages = json.at("stages").get<std::vector<RunReport::Stage>>();
+  report.inputs = json.at("inputs").get<std::vector<RunReport::Input>>();
+}
+
+void WriteRunReport(const std::filesystem::path& path, const RunReport& report) {
+  Json json = report;
+  json.erase("inputs");  // a line a picture: they come last
+  json["peak_rss_bytes"] = PeakRssBytes();
+  json["inputs"] = report.inputs;
+  WriteTextFile(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace colmap_seapoint

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,7 +32,6 @@ struct RunReport {
   };
 
   std::string version;
-  std::string fingerprint;  // hash of all that the result depends on; empty where nobody asks
   std::string command;
   std::vector<std::pair<std::string, std::string>> options;  // name and value, as typed
   int seed = 0;
@@ -66,6 +64,10 @@ RunReport StartReport(const std::string& command, const Options& options, const 
 // Notes an input that is not used, on stderr and in the report.
 void LeaveOut(const std::string& name, const std::string& reason, RunReport* report);
 
+// Appends the stages of a part of a run, and what it left out: each name once, since a picture can
+// be left out of several models.
+void AddPart(const RunReport& part, RunReport* report);
+
 // Incomplete when something was left out.
 CommandResult ResultOf(const RunReport& report);
 
@@ -93,8 +95,5 @@ RunReport::Input DescribeInput(const std::string& name, const std::filesystem::p
 // Atomic. Throws Error when the file cannot be written. peak_rss_bytes is taken now. Bytes that are
 // no UTF-8 (file names can hold any) become U+FFFD.
 void WriteRunReport(const std::filesystem::path& path, const RunReport& report);
-
-// What WriteRunReport wrote; nullopt when there is no such file, or it holds something else.
-std::optional<RunReport> ReadRunReport(const std::filesystem::path& path);
 
 }  // namespace colmap_seapoint

@@ -1,4 +1,4 @@
-#include "colmap_seapoint/pipeline/prepare_database.h"
+#include "colmap_seapoint/pipeline/workspace_database.h"
 
 #include <system_error>
 
@@ -12,8 +12,6 @@ namespace colmap_seapoint {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr char kStage[] = "database";
 
 void Remove(const fs::path& path) {
   std::error_code error;
@@ -63,23 +61,25 @@ void BeginAnew(const fs::path& path, const std::vector<ReadablePicture>& picture
 
 }  // namespace
 
-void PrepareDatabase(const fs::path& database_path, const std::vector<ReadablePicture>& pictures,
-                     const ImageReaderOptions& reader, const std::string& fingerprint,
-                     WorkspaceState* state) {
-  const auto begun = state->Read(kStage);
-  if (begun && begun->fingerprint == fingerprint) return;
-  if (fs::exists(database_path)) {
-    if (!begun) {
-      throw Error(database_path.string(), "was not made by automatic_reconstructor",
-                  "choose another --workspace_path: a database is never overwritten");
+ColmapDatabase OpenWorkspaceDatabase(const fs::path& database_path,
+                                     const std::vector<ReadablePicture>& pictures,
+                                     const ImageReaderOptions& reader, const Stage& stage,
+                                     WorkspaceState* state) {
+  // The record also says that the database is ours: it is never forgotten, only replaced.
+  if (!ReadIfDone(*state, stage)) {
+    if (fs::exists(database_path)) {
+      if (!state->Read(stage.name)) {
+        throw Error(database_path.string(), "was not made by automatic_reconstructor",
+                    "choose another --workspace_path: a database is never overwritten");
+      }
+      BeginAnew(database_path, pictures, reader);
     }
-    BeginAnew(database_path, pictures, reader);
+    FinishStage(stage, nullptr, {}, state);
   }
-  state->Finish(kStage, fingerprint, RunReport());
+  return ColmapDatabase(database_path, ColmapDatabase::Mode::kCreateIfMissing);
 }
 
-std::string DatabaseFingerprint(const fs::path& database_path) {
-  const ColmapDatabase database(database_path, ColmapDatabase::Mode::kReadWrite);
+std::string DatabaseFingerprint(const ColmapDatabase& database) {
   std::string text;
   for (const DatabaseImage& image : database.ReadImages()) {
     text += std::to_string(image.image_id) + " " + std::to_string(image.camera_id) + " " +

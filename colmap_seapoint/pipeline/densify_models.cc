@@ -1,0 +1,79 @@
+#include "colmap_seapoint/pipeline/densify_models.h"
+
+#include <filesystem>
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/files/run_report_json.h"
+#include "colmap_seapoint/pipeline/densify.h"
+#include "densify/densify_sequence.h"
+
+namespace colmap_seapoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+PartialDensifierOptions DensifierOptions(const AutomaticReconstructorOptions& options,
+                                         const Workspace& workspace, const ModelSummary& model) {
+  PartialDensifierOptions densifier;
+  densifier.image_path = workspace.images.string();
+  densifier.input_path = model.path.string();
+  densifier.output_path = (workspace.dense / model.name).string();
+  densifier.database_path = workspace.database.string();
+  densifier.rig = options.rig;
+  densifier.densification = options.densification;
+  densifier.extraction = options.extraction;
+  densifier.matching = options.matching;
+  densifier.run = options.run;
+  return densifier;
+}
+
+std::vector<fs::path> OutputsOf(const fs::path& folder, const RunReport& report, bool write_maps) {
+  std::vector<fs::path> outputs = {folder / "pairs.csv"};
+  if (report.points == 0) return outputs;
+  outputs.push_back(folder / "fused.ply");
+  outputs.push_back(folder / "fused.ply.vis");
+  if (write_maps) outputs.push_back(folder / "stereo" / "fusion.cfg");
+  return outputs;
+}
+
+RunReport DensifyOnce(const PartialDensifierOptions& densifier, const Stage& stage,
+                      ColmapDatabase* database, WorkspaceState* state) {
+  return RunStage<RunReport>(state, stage, [&]() -> StageOutput<RunReport> {
+    RunReport report = DensifyModel(densifier, database);
+    const auto outputs =
+        OutputsOf(densifier.output_path, report, densifier.densification.write_maps);
+    return {std::move(report), outputs};
+  });
+}
+
+}  // namespace
+
+void DensifyModels(const AutomaticReconstructorOptions& options, const Workspace& workspace,
+                   const std::string& mapper_fingerprint, ColmapDatabase* database,
+                   WorkspaceState* state, std::vector<ModelSummary>* models, RunReport* report) {
+  CheckWritableDir(workspace.dense);
+  RemoveStaleStages("dense_", models->size(), workspace.dense, state);
+  for (ModelSummary& model : *models) {
+    const PartialDensifierOptions densifier = DensifierOptions(options, workspace, model);
+    const Stage stage = {"dense_" + model.name, kDensificationVersion,
+                         mapper_fingerprint + model.name + "," + options.rig + "," +
+                             model.scaling_fingerprint +
+                             OptionsFingerprint(OptionValues(options.densification)),
+                         "The cloud in " + densifier.output_path + " is there already"};
+    model.densification = DensifyOnce(densifier, stage, database, state);
+    for (RunReport::Stage& part : model.densification.stages) part.name += " " + model.name;
+    model.cloud_path = workspace.dense / model.name / "fused.ply";
+    AddPart(model.densification, report);
+    report->pairs += model.densification.pairs;
+    report->points += model.densification.points;
+    if (model.densification.points > 0) continue;
+    LeaveOut("sparse/" + model.name,
+             "no pair of this model gave a point; see dense/" + model.name + "/pairs.csv", report);
+  }
+  if (report->points > 0) return;
+  throw Error(workspace.root.string(), "no pair of any model gave a point",
+              "see why in dense/0/pairs.csv there");
+}
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,51 @@
+// The options of automatic_reconstructor: every group's of the chain.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "colmap_seapoint/base/options.h"
+#include "colmap_seapoint/base/run_options.h"
+#include "colmap_seapoint/georeference/scale_measurements.h"
+#include "colmap_seapoint/pairing/pair_lists.h"
+#include "colmap_seapoint/pictures/image_reader.h"
+#include "densify/partial_densification_options.h"
+#include "feature/detector/seapoint_detector.h"
+#include "feature/match_features.h"
+
+namespace colmap_seapoint {
+
+// --matcher auto: up to this many pictures, every pair is tried.
+inline constexpr size_t kMaxImagesForAllPairs = 50;
+
+struct AutomaticReconstructorOptions {
+  std::string image_path;              // folder, sub-folders included
+  std::string workspace_path;          // folder, created when missing
+  std::string colmap_path = "colmap";  // a path, or a name on PATH
+  std::string quality = "survey";      // field, survey or archive: what posing may cost
+  std::string matcher = "auto";        // auto, sequential or exhaustive
+  bool adjust_principal_point = true;
+  std::string rig;
+  ScaleSources scale;
+  ImageReaderOptions reader;
+  SeaPointExtractionOptions extraction;
+  SequentialPairOptions pairs;
+  SeaPointMatchingOptions matching;
+  std::map<std::string, std::string> mapper;  // "Mapper.<option>" -> value, handed on
+  PartialDensificationOptions densification;
+  RunOptions run;
+
+  void Bind(OptionTable* table);
+  // The SeaPoints' defaults of the quality.
+  void Preset();
+  // Before any work. Throws UsageError for values that contradict each other, Error for paths that
+  // are not there.
+  void Check() const;
+  ForeignOptions Foreign();
+};
+
+// Whether the lens is ours to find: not where the user says what it is, or what of it is to be
+// refined.
+bool FindsLens(const AutomaticReconstructorOptions& options);
+
+}  // namespace colmap_seapoint

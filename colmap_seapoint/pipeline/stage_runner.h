@@ -1,0 +1,98 @@
+// A stage of a long run is done once. What it was made from, what came out of it and which files
+// hold that stand in WORKSPACE/state/<stage>.json, one small atomic file a stage; the database
+// alone is not enough, since COLMAP opens it without synchronisation.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace colmap_seapoint {
+
+// What is known of the stages of one workspace, for the one run that holds its lock.
+class WorkspaceState {
+ public:
+  // Creates the folder and holds its lock until the end of this object (and of any program that
+  // a killed run had started). Throws Error when another run works there.
+  explicit WorkspaceState(const std::filesystem::path& workspace);
+  ~WorkspaceState();
+  WorkspaceState(const WorkspaceState&) = delete;
+  WorkspaceState& operator=(const WorkspaceState&) = delete;
+
+  // nullopt when the stage was not done, or its file is damaged.
+  std::optional<nlohmann::ordered_json> Read(const std::string& stage) const;
+  // Everything that the workspace's stages wrote is brought to the disk first.
+  void Write(const std::string& stage, const nlohmann::ordered_json& record);
+  void Forget(const std::string& stage);
+
+  // Absolute. Outputs are remembered relative to it, so that a workspace can be moved.
+  const std::filesystem::path& Workspace() const { return workspace_; }
+
+ private:
+  std::filesystem::path PathOf(const std::string& stage) const;
+
+  std::filesystem::path workspace_, folder_;
+  int lock_ = -1;
+};
+
+// What a stage's result depends on.
+struct Stage {
+  std::string name;     // "mapper", "dense_0": of its file
+  std::string version;  // of its algorithm, from that algorithm's header
+  std::string inputs;   // text that changes whenever options or inputs do
+  std::string done;     // said to the user when it was done already; empty = nothing
+};
+
+// What a stage gives: a value that is remembered, and the files or folders that hold the rest. When
+// one of them is gone, the stage counts as not done.
+template <typename Result>
+struct StageOutput {
+  Result result;
+  std::vector<std::filesystem::path> outputs;
+};
+
+// Hash of version and inputs.
+std::string StageFingerprint(const Stage& stage);
+
+// The record of a stage that was done from the same inputs by the same version, and whose outputs
+// are all there.
+std::optional<nlohmann::ordered_json> ReadIfDone(const WorkspaceState& state, const Stage& stage);
+
+// The result of such a stage; nullopt when it has to be done.
+template <typename Result>
+std::optional<Result> ResultIfDone(const WorkspaceState& state, const Stage& stage) {
+  const auto record = ReadIfDone(state, stage);
+  if (!record) return std::nullopt;
+  try {
+    return record->at("result").get<Result>();
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;  // written by a version that kept something else
+  }
+}
+
+void FinishStage(const Stage& stage, const nlohmann::ordered_json& result,
+                 const std::vector<std::filesystem::path>& outputs, WorkspaceState* state);
+
+// The result of the stage: the one that is remembered, or that of `work`, which is remembered then.
+// `work` is called after what was known of the stage is forgotten, so that an interruption never
+// leaves a record beside half an output.
+template <typename Result>
+Result RunStage(WorkspaceState* state, const Stage& stage,
+                const std::function<StageOutput<Result>()>& work) {
+  if (auto known = ResultIfDone<Result>(*state, stage)) return *std::move(known);
+  state->Forget(stage.name);
+  StageOutput<Result> output = work();
+  FinishStage(stage, output.result, output.outputs, state);
+  return std::move(output.result);
+}
+
+// Forgets the stages <prefix><k> from `first` on, as an earlier run left them that had found more
+// models, and removes the folder <k> of each below `folder`.
+void RemoveStaleStages(const std::string& prefix, size_t first, const std::filesystem::path& folder,
+                       WorkspaceState* state);
+
+}  // namespace colmap_seapoint
