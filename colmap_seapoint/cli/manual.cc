@@ -7,6 +7,7 @@
 
 #include "colmap_seapoint/base/version.h"
 #include "colmap_seapoint/cli/command_line.h"
+#include "colmap_seapoint/cli/option_reference.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -34,63 +35,43 @@ std::string RoffEntry(const OptionInfo& option) {
   return entry + "\n" + Roff(OptionHelp(option)) + "\n";
 }
 
-struct Entry {
-  std::string text;
-  bool is_in_group = false;
-  std::vector<std::string> commands;  // that take it
-};
-
-// Of all options, in the order of the commands; one that reads differently in another command
-// stands there once more.
-std::vector<Entry> Entries(const std::vector<Command>& commands) {
-  std::vector<Entry> entries;
-  for (const Command& command : commands) {
-    OptionTable table;
-    command.bind(&table);
-    for (const OptionInfo& option : table.Options()) {
-      const std::string text = RoffEntry(option);
-      auto known = std::find_if(entries.begin(), entries.end(),
-                                [&](const Entry& entry) { return entry.text == text; });
-      const bool is_in_group = option.name.find('.') != std::string::npos;
-      if (known == entries.end()) known = entries.insert(known, {text, is_in_group, {}});
-      known->commands.push_back(command.name);
-    }
-  }
-  return entries;
+std::string Names(const SharedOptions& shared, size_t num_commands) {
+  if (shared.commands.size() == num_commands) return "every command";
+  std::string names;
+  for (const std::string& name : shared.commands) names += (names.empty() ? "" : ", ") + name;
+  return names;
 }
 
-void PrintCommandSections(const std::vector<Command>& commands, const std::vector<Entry>& entries,
+void PrintCommandSections(const std::vector<Command>& commands, const OptionReference& reference,
                           std::ostream& out) {
-  for (const Command& command : commands) {
+  for (size_t i = 0; i < commands.size(); ++i) {
+    const Command& command = commands[i];
     out << ".SS " << Roff(command.name) << "\n" << Roff(command.summary) << "\n";
-    for (const Entry& entry : entries) {
-      const auto& takers = entry.commands;
-      if (entry.is_in_group || takers.size() == commands.size()) continue;
-      if (std::count(takers.begin(), takers.end(), command.name) > 0) out << entry.text;
-    }
+    for (const OptionEntry& entry : reference.own[i]) out << RoffEntry(entry.option);
     if (command.foreign.group.empty()) continue;
     out << ".TP\n\\fB\\-\\-" << Roff(command.foreign.group) << ".\\fR\\fIoption value\\fR\n"
         << Roff(command.foreign.help) << "\n";
   }
 }
 
-// What several commands take, once; those that the same commands take stand together.
-void PrintSharedSections(size_t num_commands, std::vector<Entry> entries, std::ostream& out) {
-  const auto is_own = [&](const Entry& entry) {
-    return !entry.is_in_group && entry.commands.size() < num_commands;
-  };
-  entries.erase(std::remove_if(entries.begin(), entries.end(), is_own), entries.end());
-  while (!entries.empty()) {
-    const std::vector<std::string> takers = entries.front().commands;
-    std::string names;
-    for (const std::string& taker : takers) names += (names.empty() ? "" : ", ") + taker;
-    out << ".SS Of " << (takers.size() == num_commands ? "every command" : Roff(names)) << "\n";
-    for (const Entry& entry : entries) {
-      if (entry.commands == takers) out << entry.text;
-    }
-    entries.erase(std::remove_if(entries.begin(), entries.end(),
-                                 [&](const Entry& entry) { return entry.commands == takers; }),
-                  entries.end());
+// Text of a table's cell.
+std::string Cell(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '|' || c == '<' || c == '*' || c == '_') escaped += '\\';
+    escaped += c;
+  }
+  return escaped;
+}
+
+void PrintOptionRows(const std::vector<OptionEntry>& entries, std::ostream& out) {
+  if (entries.empty()) return;
+  out << "| option | default | what |\n|---|---|---|\n";
+  for (const OptionEntry& entry : entries) {
+    const OptionInfo& option = entry.option;
+    const std::string value = option.default_value.empty() ? "" : "`" + option.default_value + "`";
+    out << "| `--" << option.name << "` | " << (option.required ? "required" : value) << " | "
+        << Cell(OptionHelp(option)) << " |\n";
   }
 }
 
@@ -145,7 +126,8 @@ void PrintManPage(const std::vector<Command>& commands, std::ostream& out) {
       << "\\fR \\fIfile.ini\\fR]\n[\\fB\\-\\-\\fIoption value\\fR]...\n.br\n"
       << ".B colmap_seapoint\n.I command\n.B \\-h\n.br\n"
       << ".B colmap_seapoint version\n.br\n"
-      << ".B colmap_seapoint help\n[\\fB\\-\\-format\\fR \\fBtext\\fR|\\fBman\\fR|\\fBbash\\fR]\n"
+      << ".B colmap_seapoint help\n[\\fB\\-\\-format\\fR "
+         "\\fBtext\\fR|\\fBman\\fR|\\fBbash\\fR|\\fBmarkdown\\fR]\n"
       << ".SH DESCRIPTION\nTurns the photographs of a dive into one dense point cloud without\n"
       << "redundancy: SeaPoints and their matches go into a COLMAP database, poses come from the\n"
       << "unmodified\n.BR colmap (1)\nmapper, and then only what is new is densified, pair by pair "
@@ -155,10 +137,13 @@ void PrintManPage(const std::vector<Command>& commands, std::ostream& out) {
       << ".PP\nA project file holds the same options: top\\-level keys, then [Group] sections. A\n"
       << "value on the command line wins.\n"
       << ".SH COMMANDS\n";
-  const std::vector<Entry> entries = Entries(commands);
-  PrintCommandSections(commands, entries, out);
+  const OptionReference reference = MakeOptionReference(commands);
+  PrintCommandSections(commands, reference, out);
   out << ".SH SHARED OPTIONS\n";
-  PrintSharedSections(commands.size(), entries, out);
+  for (const SharedOptions& shared : reference.shared) {
+    out << ".SS Of " << Roff(Names(shared, commands.size())) << "\n";
+    for (const OptionEntry& entry : shared.entries) out << RoffEntry(entry.option);
+  }
   out << ".SH EXIT STATUS\n"
       << ".TP\n.B 0\ndone\n"
       << ".TP\n.B 1\nfailed: the last line on standard error says what, where, and what to do\n"
@@ -181,7 +166,7 @@ void PrintBashCompletion(const std::vector<Command>& commands, std::ostream& out
       << "    return\n"
       << "  fi\n"
       << "  case $command:$before in\n"
-      << "    help:--format)\n      values='text man bash' ;;\n";
+      << "    help:--format)\n      values='text man bash markdown' ;;\n";
   PrintValueCases(commands, out);
   out << "  esac\n"
       << "  if [ -n \"$values\" ]; then\n"
@@ -197,6 +182,25 @@ void PrintBashCompletion(const std::vector<Command>& commands, std::ostream& out
       << "  COMPREPLY=($(compgen -W \"$options\" -- \"$word\"))\n"
       << "}\n"
       << "complete -o default -F _colmap_seapoint colmap_seapoint\n";
+}
+
+void PrintMarkdown(const std::vector<Command>& commands, std::ostream& out) {
+  out << "# Options\n\nMade by `colmap_seapoint help --format markdown` from the program's option "
+         "tables; `tests/options_reference_test.sh` fails when it is stale. Every command also "
+         "takes `--project_path file.ini` and `-h`. Behind an option's text stand its legal range "
+         "and where it comes from: a section of the paper, COLMAP, or this program (ours).\n";
+  const OptionReference reference = MakeOptionReference(commands);
+  for (size_t i = 0; i < commands.size(); ++i) {
+    out << "\n## " << commands[i].name << "\n\n" << commands[i].summary << "\n\n";
+    PrintOptionRows(reference.own[i], out);
+    if (commands[i].foreign.group.empty()) continue;
+    out << "| `--" << commands[i].foreign.group << ".*` | | " << Cell(commands[i].foreign.help)
+        << " |\n";
+  }
+  for (const SharedOptions& shared : reference.shared) {
+    out << "\n## Of " << Names(shared, commands.size()) << "\n\n";
+    PrintOptionRows(shared.entries, out);
+  }
 }
 
 }  // namespace colmap_seapoint

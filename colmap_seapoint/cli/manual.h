@@ -16,4 +16,7 @@ void PrintManPage(const std::vector<Command>& commands, std::ostream& out);
 // A script to be sourced by bash: commands, their options, choices, and file names.
 void PrintBashCompletion(const std::vector<Command>& commands, std::ostream& out);
 
+// colmap_seapoint/OPTIONS.md: a table a command, then what several commands take.
+void PrintMarkdown(const std::vector<Command>& commands, std::ostream& out);
+
 }  // namespace colmap_seapoint

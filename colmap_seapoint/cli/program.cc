@@ -28,7 +28,8 @@ void PrintHelp(const std::vector<Command>& commands, std::ostream& out) {
       << "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 done but some input was left out.\n";
 }
 
-// `help [--format text|man|bash]`. The last two are for the package: see manual.h.
+// `help [--format text|man|bash|markdown]`. The others are for the package and its reference: see
+// manual.h.
 ExitCode RunHelp(const std::vector<Command>& commands, const std::vector<std::string>& arguments) {
   if (arguments.empty()) {
     PrintHelp(commands, std::cout);
@@ -42,9 +43,11 @@ ExitCode RunHelp(const std::vector<Command>& commands, const std::vector<std::st
     PrintManPage(commands, std::cout);
   } else if (format == "bash") {
     PrintBashCompletion(commands, std::cout);
+  } else if (format == "markdown") {
+    PrintMarkdown(commands, std::cout);
   } else {
     throw UsageError(
-        "help takes --format text, man or bash; 'colmap_seapoint <command> -h' lists "
+        "help takes --format text, man, bash or markdown; 'colmap_seapoint <command> -h' lists "
         "the options of a command");
   }
   return kDone;
