@@ -1,38 +1,80 @@
 #!/usr/bin/env bash
-# Data flows one way: base <- feature, densify, georeference, io <- compare <- commands <- main.
-# feature, densify and georeference do not know each other, nor io, nor anything above. Fails on the
-# first include against that.
-set -u
+# Data flows one way. Each line of `rooms` says which other rooms the sources of one room may
+# include from; whatever is not named is forbidden, and so is a room that no line names. Then, which
+# libraries and system calls a room may touch. Prints every breach.
+#   include_rules_test.sh SOURCE_FOLDER
+set -uf  # -f: the stars below are patterns of rooms, not of files
 cd "$1" || exit 1
+
+read -r -d '' rooms <<'END'
+colmap_seapoint/base
+colmap_seapoint/io/files        colmap_seapoint/base
+colmap_seapoint/io/image        colmap_seapoint/base colmap_seapoint/io/files
+colmap_seapoint/io/cloud        colmap_seapoint/base colmap_seapoint/io/files
+colmap_seapoint/io/colmap       colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/image
+feature/kernels                 colmap_seapoint/base
+feature/detector                colmap_seapoint/base feature/kernels
+feature/descriptor              colmap_seapoint/base feature/kernels
+feature/matching                colmap_seapoint/base feature/kernels feature/descriptor
+feature/retrieval               colmap_seapoint/base feature/kernels feature/descriptor
+feature                         colmap_seapoint/base feature/*
+densify/kernels                 colmap_seapoint/base
+densify/match                   colmap_seapoint/base densify/kernels
+densify/overlap                 colmap_seapoint/base densify/match
+densify/cloud                   colmap_seapoint/base densify/match densify/overlap
+densify/sequence                colmap_seapoint/base densify/match densify/overlap densify/cloud
+densify/maps                    colmap_seapoint/base densify/match densify/cloud
+densify                         colmap_seapoint/base densify/*
+colmap_seapoint/georeference    colmap_seapoint/base colmap_seapoint/io/files
+colmap_seapoint/compare         colmap_seapoint/base colmap_seapoint/io/cloud
+colmap_seapoint/mapping         colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/colmap
+colmap_seapoint/pictures        colmap_seapoint/base colmap_seapoint/io/* feature feature/* densify densify/*
+colmap_seapoint/pairing         colmap_seapoint/base colmap_seapoint/io/* feature feature/*
+colmap_seapoint/report          colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/georeference densify densify/*
+colmap_seapoint/pipeline        colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/georeference colmap_seapoint/mapping colmap_seapoint/pictures colmap_seapoint/pairing colmap_seapoint/report feature feature/* densify densify/*
+colmap_seapoint/cli             colmap_seapoint/base colmap_seapoint/pipeline
+colmap_seapoint                 colmap_seapoint/base colmap_seapoint/cli
+END
+
 failed=0
+declare -A allowed=()
+while read -r room others; do allowed[$room]=$others; done <<<"$rooms"
 
-forbid() {  # FOLDER PATTERN WHY
-  if [ -z "$(find "$1" -name '*.h' -o -name '*.cc')" ]; then
-    echo "$1: no sources found"
+# Prints FILE ROOM for every included header of ours.
+while read -r file header; do
+  room=${file%/*} of=${header%/*}
+  [ "$room" = "$of" ] && continue
+  if [ -z "${allowed[$room]+x}" ]; then
+    echo "$file: the room $room is not in the list of tests/include_rules_test.sh"
     failed=1
+    continue
   fi
-  if grep -rnE "^#include \"($2)" "$1" --include='*.h' --include='*.cc'; then
-    echo "$1 must not include that: $3"
-    failed=1
-  fi
+  ok=
+  for other in ${allowed[$room]}; do
+    # shellcheck disable=SC2053  # a pattern
+    [[ $of == $other ]] && ok=1
+  done
+  [ -n "$ok" ] || { echo "$file must not include $header"; failed=1; }
+done < <(grep -rnoE '^#include "[^"]+"' colmap_seapoint feature densify --include='*.h' --include='*.cc' |
+  sed -nE 's|^([^:]+):[0-9]+:#include "((colmap_seapoint\|feature\|densify\|examples\|tests)/.*)"$|\1 \2|p')
+
+# WHAT may be touched by ROOMS only: an extended regular expression, and where it is allowed.
+only_in() {  # WHAT REGEX ALLOWED_PATHS_REGEX
+  local found
+  found=$(grep -rnE "$2" colmap_seapoint feature densify --include='*.h' --include='*.cc' |
+    grep -vE "^($3)")
+  [ -z "$found" ] || { echo "$1:"; echo "$found"; failed=1; }
 }
-
-forbid colmap_seapoint/base 'feature/|densify/|examples/|colmap_seapoint/(io|compare|commands|georeference)' \
-  'base knows nothing but itself'
-forbid colmap_seapoint/io 'feature/|densify/|examples/|colmap_seapoint/(compare|commands|georeference)' \
-  'io turns files into plain structs and back'
-forbid colmap_seapoint/compare 'feature/|densify/|examples/|colmap_seapoint/(commands|georeference)' \
-  'compare builds on base and io'
-forbid feature 'densify/|examples/|colmap_seapoint/(io|compare|commands|georeference)' 'feature builds on base only'
-forbid densify 'feature/|examples/|colmap_seapoint/(io|compare|commands|georeference)' 'densify builds on base only'
-forbid colmap_seapoint/georeference 'feature/|densify/|examples/|colmap_seapoint/(io|compare|commands)' \
-  'georeference builds on base only'
-forbid colmap_seapoint/commands 'examples/' 'commands do not need the examples'
-
-if grep -rnE 'std::(cout|cerr)|printf\(|f?open\(|fstream' feature densify colmap_seapoint/base \
-    colmap_seapoint/compare colmap_seapoint/georeference \
-    --include='*.cc' --include='*.h' | grep -v '^colmap_seapoint/base/progress'; then
-  echo "feature, densify, georeference, compare and base never print and never open a file"
-  failed=1
-fi
+only_in "Ceres solves in mapping, georeference and two-view verification only" '#include <ceres/' \
+  'colmap_seapoint/(mapping|georeference)/|feature/matching/'
+only_in "children are started by mapping only" 'RunSubprocess\(|io/files/subprocess\.h' \
+  'colmap_seapoint/(mapping|io/files)/'
+only_in "SQLite is io's" '#include <sqlite3\.h>|io/files/sqlite\.h' 'colmap_seapoint/io/(files|colmap)/'
+only_in "OpenCV's decoders are io/image's" '#include <opencv2/imgcodecs' 'colmap_seapoint/io/image/'
+only_in "only cli prints results, only base/progress prints the log" \
+  'std::(cout|cerr|clog)|[^sn]printf\(|(^|[^a-z_])puts\(' \
+  'colmap_seapoint/(cli/|base/progress|main\.cc)'
+only_in "files are io's, and the pipeline's records and locks" \
+  'std::[io]?fstream|[^a-zA-Z_]f?open\(|#include <fstream>' \
+  'colmap_seapoint/(io/|cli/command_line|pipeline/stage_runner)'
 exit $failed
