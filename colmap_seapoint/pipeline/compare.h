@@ -10,13 +10,13 @@
 namespace colmap_seapoint {
 
 struct CloudComparerOptions {
-  std::string input_path;
-  std::string reference_path;
-  std::string output_path;
+  std::string input_path;       // cloud to be judged, PLY
+  std::string reference_path;   // cloud to judge it by, PLY, in the same frame
+  std::string output_path;      // JSON with every figure
   std::string difference_path;  // folder; empty = no difference clouds and no picture
-  std::string distances;        // "0.01,0.02"
-  bool unit_in_metres = false;
-  CompareOptions compare;  // without distances and num_threads, which stand above and in run
+  std::string distances;        // "0.01,0.02", units of the clouds; empty = from the spacing
+  bool unit_in_metres = false;  // density per cm^2 too
+  CompareOptions compare;       // without distances and num_threads, which stand above and in run
   RunOptions run;
 
   void Bind(OptionTable* table);

@@ -14,11 +14,11 @@
 namespace colmap_seapoint {
 
 struct PartialDensifierOptions {
-  std::string image_path;
-  std::string input_path;
-  std::string output_path;
-  std::string database_path;
-  std::string rig;
+  std::string image_path;     // folder of the pictures
+  std::string input_path;     // COLMAP model, binary or text, or a folder of several
+  std::string output_path;    // folder for the cloud and its reports
+  std::string database_path;  // with SeaPoints and matches; empty = they are found again
+  std::string rig;            // "", "none" or "LEFT,RIGHT" (read_rig.h)
   PartialDensificationOptions densification;
   SeaPointExtractionOptions extraction;
   SeaPointMatchingOptions matching;

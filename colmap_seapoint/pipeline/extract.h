@@ -15,9 +15,9 @@
 namespace colmap_seapoint {
 
 struct FeatureExtractorOptions {
-  std::string database_path;
-  std::string image_path;
-  std::string image_list_path;
+  std::string database_path;    // COLMAP database, created when it does not exist
+  std::string image_path;       // folder, sub-folders included
+  std::string image_list_path;  // names of the pictures to take, one a line; empty = all
   ImageReaderOptions reader;
   SeaPointExtractionOptions extraction;
   RunOptions run;

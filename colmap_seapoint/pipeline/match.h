@@ -16,7 +16,7 @@
 namespace colmap_seapoint {
 
 struct SequentialMatcherOptions {
-  std::string database_path;
+  std::string database_path;  // COLMAP database with SeaPoints
   SequentialPairOptions pairs;
   SeaPointMatchingOptions matching;
   RunOptions run;
@@ -25,7 +25,7 @@ struct SequentialMatcherOptions {
 };
 
 struct ExhaustiveMatcherOptions {
-  std::string database_path;
+  std::string database_path;  // COLMAP database with SeaPoints
   SeaPointMatchingOptions matching;
   RunOptions run;
 
@@ -33,8 +33,8 @@ struct ExhaustiveMatcherOptions {
 };
 
 struct SpatialMatcherOptions {
-  std::string database_path;
-  std::string image_path;
+  std::string database_path;  // COLMAP database with SeaPoints
+  std::string image_path;     // folder whose EXIF tells places; empty = the database does
   SpatialPairOptions pairs;
   SeaPointMatchingOptions matching;
   RunOptions run;
