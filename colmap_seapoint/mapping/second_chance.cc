@@ -5,6 +5,10 @@
 #include <vector>
 
 #include "colmap_seapoint/base/natural_order.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_features.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -13,9 +17,9 @@ constexpr size_t kStrongPair = 30;  // verified matches
 
 std::set<uint32_t> StronglyTied(const ColmapDatabase& database) {
   std::set<uint32_t> tied;
-  for (const ImagePair& pair : database.ReadVerifiedPairs()) {
+  for (const ImagePair& pair : ReadVerifiedPairs(database)) {
     if (tied.count(pair.first) > 0 && tied.count(pair.second) > 0) continue;
-    if (database.ReadTwoViewGeometry(pair).inliers.size() >= kStrongPair) {
+    if (ReadTwoViewGeometry(database, pair).inliers.size() >= kStrongPair) {
       tied.insert({pair.first, pair.second});
     }
   }
@@ -26,8 +30,8 @@ std::set<uint32_t> StronglyTied(const ColmapDatabase& database) {
 
 std::set<std::string> FindSecondChancePictures(const ColmapDatabase& database) {
   std::vector<DatabaseImage> pictures;
-  for (const DatabaseImage& image : database.ReadImages()) {
-    const auto features = database.ReadFeatures(image.image_id);
+  for (const DatabaseImage& image : ReadImages(database)) {
+    const auto features = ReadFeatures(database, image.image_id);
     if (features && !features->points.empty()) pictures.push_back(image);
   }
   std::sort(pictures.begin(), pictures.end(), [](const DatabaseImage& a, const DatabaseImage& b) {

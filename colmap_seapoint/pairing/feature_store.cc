@@ -1,5 +1,7 @@
 #include "colmap_seapoint/pairing/feature_store.h"
 
+#include "colmap_seapoint/io/colmap/database_features.h"
+
 namespace colmap_seapoint {
 namespace {
 
@@ -18,7 +20,7 @@ std::shared_ptr<const Features> FeatureStore::Read(uint32_t image_id) {
     recent_.splice(recent_.begin(), recent_, known->second);
     return known->second->features;
   }
-  auto read = database_->ReadFeatures(image_id);
+  auto read = ReadFeatures(*database_, image_id);
   if (!read) return nullptr;
   auto features = std::make_shared<const Features>(std::move(*read));
   bytes_ += BytesOf(*features);

@@ -8,6 +8,11 @@
 
 #include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_features.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
+#include "colmap_seapoint/io/colmap/database_loops.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/io/files/content_hash.h"
 #include "colmap_seapoint/pairing/feature_store.h"
 #include "feature/retrieval/loop_candidates.h"
@@ -27,7 +32,7 @@ std::string Fingerprint(const std::vector<DatabaseImage>& sequence, const LoopSe
   }
   for (const DatabaseImage& image : sequence) {
     text += "\n" + std::to_string(image.image_id) + " " +
-            database.FeaturesFingerprint(image.image_id).value_or("");
+            FeaturesFingerprint(database, image.image_id).value_or("");
   }
   return HashText(text);
 }
@@ -105,7 +110,7 @@ std::vector<LoopCandidate> LoopFinder::FindCandidates() {
 // Pairs that other matching has given a row, before or after: never ours.
 bool IsTaken(const ImagePair& pair, const std::set<ImagePair>& former,
              const ColmapDatabase& database) {
-  return former.count(pair) == 0 && database.HasMatches(pair);
+  return former.count(pair) == 0 && HasMatches(database, pair);
 }
 
 }  // namespace
@@ -113,9 +118,9 @@ bool IsTaken(const ImagePair& pair, const std::set<ImagePair>& former,
 std::vector<ImagePair> FindLoopPairs(const std::vector<DatabaseImage>& sequence,
                                      const LoopSearch& search, ColmapDatabase* database) {
   const std::string fingerprint = Fingerprint(sequence, search, *database);
-  if (const auto known = database->ReadLoopPairs(fingerprint)) return *known;
+  if (const auto known = ReadLoopPairs(*database, fingerprint)) return *known;
   LoopFinder finder(sequence, search, database);
-  const auto former_pairs = database->ReadLoopPairs();
+  const auto former_pairs = ReadLoopPairs(*database);
   const std::set<ImagePair> former(former_pairs.begin(), former_pairs.end());
   std::vector<ImagePair> pairs;
   for (const LoopCandidate& candidate : finder.FindCandidates()) {
@@ -123,7 +128,7 @@ std::vector<ImagePair> FindLoopPairs(const std::vector<DatabaseImage>& sequence,
         std::minmax(sequence[candidate.first].image_id, sequence[candidate.second].image_id);
     if (!IsTaken(pair, former, *database)) pairs.push_back(pair);
   }
-  database->WriteLoopPairs(fingerprint, pairs);
+  WriteLoopPairs(database, fingerprint, pairs);
   LogInfo(std::to_string(pairs.size()) + " pairs beyond the sequence look alike");
   return pairs;
 }

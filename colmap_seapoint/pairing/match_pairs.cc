@@ -3,11 +3,16 @@
 #include <algorithm>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_features.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/pairing/feature_store.h"
 #include "feature/matching/overlap_share.h"
 
@@ -24,7 +29,7 @@ std::vector<ImagePair> PairsWithoutRows(const std::vector<ImagePair>& pairs,
                                         const ColmapDatabase& database) {
   std::vector<ImagePair> missing;
   for (const ImagePair& pair : pairs) {
-    if (!database.HasMatches(pair)) missing.push_back(pair);
+    if (!HasMatches(database, pair)) missing.push_back(pair);
   }
   return missing;
 }
@@ -58,11 +63,11 @@ MatchedPair MatchOne(const Camera& camera1, const std::shared_ptr<const Features
 
 std::vector<DatabaseImage> ImagesWithSeaPoints(const std::string& database_path,
                                                const ColmapDatabase& database, RunReport* report) {
-  const std::vector<DatabaseImage> images = database.ReadImages();
+  const std::vector<DatabaseImage> images = ReadImages(database);
   report->images_in = static_cast<int64_t>(images.size());
   std::vector<DatabaseImage> usable;
   for (const DatabaseImage& image : images) {
-    if (database.FeaturesFingerprint(image.image_id)) usable.push_back(image);
+    if (FeaturesFingerprint(database, image.image_id)) usable.push_back(image);
   }
   if (usable.empty()) {
     throw Error(database_path,
@@ -70,7 +75,7 @@ std::vector<DatabaseImage> ImagesWithSeaPoints(const std::string& database_path,
                 "run colmap_seapoint feature_extractor on it first");
   }
   for (const DatabaseImage& image : images) {
-    if (!database.FeaturesFingerprint(image.image_id)) {
+    if (!FeaturesFingerprint(database, image.image_id)) {
       LeaveOut(image.name, "has no SeaPoints in the database", report);
     }
   }
@@ -81,13 +86,14 @@ std::vector<DatabaseImage> ImagesWithSeaPoints(const std::string& database_path,
 void MatchPairs(const std::vector<ImagePair>& pairs, const SeaPointMatchingOptions& options,
                 double min_overlap_share, int num_threads, ColmapDatabase* database,
                 RunReport* report) {
-  const std::map<uint32_t, Camera> cameras = database->ReadCameras();
+  const std::map<uint32_t, Camera> cameras = ReadCameras(*database);
   std::map<uint32_t, DatabaseImage> images;
-  for (const DatabaseImage& image : database->ReadImages()) images[image.image_id] = image;
+  for (const DatabaseImage& image : ReadImages(*database)) images[image.image_id] = image;
   const std::vector<ImagePair> missing = PairsWithoutRows(pairs, *database);
   const auto total = static_cast<int64_t>(pairs.size());
   const auto count = static_cast<int64_t>(missing.size());
   FeatureStore store(database);
+  std::optional<DatabaseTransaction> batch;
   Progress progress("Matches of pairs", total, total - count);
   num_threads = EffectiveNumThreads(num_threads);
   OrderedPipeline<MatchedPair>(
@@ -101,9 +107,12 @@ void MatchPairs(const std::vector<ImagePair>& pairs, const SeaPointMatchingOptio
       [&](int64_t i, MatchedPair&& matched) {
         const auto [id1, id2] = missing[static_cast<size_t>(i)];
         std::lock_guard<std::mutex> lock(store.Mutex());
-        if (i % kPairsPerTransaction == 0) database->BeginTransaction();
-        database->WriteMatches(id1, id2, matched.matches, matched.geometry);
-        if ((i + 1) % kPairsPerTransaction == 0 || i + 1 == count) database->CommitTransaction();
+        if (!batch) batch.emplace(database);
+        WriteMatches(database, id1, id2, matched.matches, matched.geometry);
+        if ((i + 1) % kPairsPerTransaction == 0 || i + 1 == count) {
+          batch->Commit();
+          batch.reset();
+        }
         progress.Update(total - count + i + 1);
       });
   progress.Finish();
@@ -121,7 +130,7 @@ SeaPointMatchingOptions DemandingOptions(const SeaPointMatchingOptions& options)
 void WarnOfLonelyImages(const ColmapDatabase& database, const std::vector<DatabaseImage>& images) {
   if (images.size() < 2) return;
   std::set<uint32_t> matched;
-  for (const ImagePair& pair : database.ReadVerifiedPairs()) {
+  for (const ImagePair& pair : ReadVerifiedPairs(database)) {
     matched.insert(pair.first);
     matched.insert(pair.second);
   }

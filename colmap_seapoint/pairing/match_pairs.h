@@ -6,6 +6,8 @@
 
 #include "colmap_seapoint/base/run_options.h"
 #include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/io/files/run_report.h"
 #include "feature/match_features.h"
 

@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "colmap_seapoint/base/options.h"
-#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
 
 namespace colmap_seapoint {
 

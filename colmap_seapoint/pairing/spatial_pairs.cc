@@ -11,6 +11,10 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/geodesy.h"
 #include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
+#include "colmap_seapoint/io/colmap/database_priors.h"
 #include "colmap_seapoint/io/files/positions_csv.h"
 #include "colmap_seapoint/io/image/image_file.h"
 
@@ -76,7 +80,7 @@ KnownPositions FromDatabase(const std::vector<DatabaseImage>& images, bool unkno
   KnownPositions known;
   known.missing = "has no position in the database";
   std::optional<bool> is_geographic;
-  for (const PositionPrior& prior : database.ReadPositionPriors()) {
+  for (const PositionPrior& prior : ReadPositionPriors(database)) {
     const bool is_gps =
         prior.system == System::kGeographic || (prior.system == System::kUnknown && unknown_is_gps);
     const Eigen::Vector3d& p = prior.position;

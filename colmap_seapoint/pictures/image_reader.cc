@@ -8,6 +8,8 @@
 #include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/base/run_options.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/files/run_report.h"
 
 namespace colmap_seapoint {
@@ -62,8 +64,8 @@ Camera NewCamera(const ImageInfo& info, const ImageReaderOptions& options) {
 class Registrar {
  public:
   Registrar(const ImageReaderOptions& options, ColmapDatabase* database)
-      : options_(options), database_(database), cameras_(database->ReadCameras()) {
-    for (const DatabaseImage& image : database->ReadImages()) images_[image.name] = image;
+      : options_(options), database_(database), cameras_(ReadCameras(*database)) {
+    for (const DatabaseImage& image : ReadImages(*database)) images_[image.name] = image;
   }
 
   // Groups of pictures that are known keep their camera, whatever order new ones come in.
@@ -93,7 +95,7 @@ class Registrar {
       return std::nullopt;
     }
     if (known != images_.end()) return known->second.image_id;
-    return database_->AddImage(picture.name, camera_id);
+    return AddImage(database_, picture.name, camera_id);
   }
 
  private:
@@ -102,7 +104,7 @@ class Registrar {
     const auto known = group_cameras_.find(group);
     if (known != group_cameras_.end()) return known->second;
     const Camera camera = NewCamera(picture.info, options_);
-    const uint32_t camera_id = database_->AddCamera(camera);
+    const uint32_t camera_id = AddCamera(database_, camera);
     cameras_[camera_id] = camera;
     group_cameras_[group] = camera_id;
     return camera_id;
@@ -214,7 +216,7 @@ std::vector<RegisteredPicture> RegisterPictures(const std::vector<ReadablePictur
   std::vector<RegisteredPicture> registered;
   Registrar registrar(options, database);
   registrar.LearnGroups(pictures);
-  database->BeginTransaction();
+  DatabaseTransaction transaction(database);
   for (const ReadablePicture& picture : pictures) {
     std::string reason;
     const auto image_id = registrar.Register(picture, &reason);
@@ -224,7 +226,7 @@ std::vector<RegisteredPicture> RegisterPictures(const std::vector<ReadablePictur
       LeaveOut(picture.name, reason, report);
     }
   }
-  database->CommitTransaction();
+  transaction.Commit();
   return registered;
 }
 

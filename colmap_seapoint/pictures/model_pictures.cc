@@ -5,6 +5,10 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_features.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/io/image/image_file.h"
 
 namespace colmap_seapoint {
@@ -19,14 +23,14 @@ ModelPictures::ModelPictures(const SparseModel& model, const std::filesystem::pa
       matching_(matching),
       has_stored_(model.images.size()) {
   if (database_ == nullptr) return;
-  const std::map<uint32_t, Camera> cameras = database_->ReadCameras();
+  const std::map<uint32_t, Camera> cameras = ReadCameras(*database_);
   std::unordered_map<std::string, const Camera*> camera_of;  // the model's
   for (const PosedImage& image : model_.images) {
     camera_of[image.name] = &model_.cameras.at(image.camera_id);
   }
-  for (const DatabaseImage& image : database_->ReadImages()) {
+  for (const DatabaseImage& image : ReadImages(*database_)) {
     const auto posed = camera_of.find(image.name);
-    if (posed == camera_of.end() || !database_->FeaturesFingerprint(image.image_id)) continue;
+    if (posed == camera_of.end() || !FeaturesFingerprint(*database_, image.image_id)) continue;
     const auto found_in = cameras.find(image.camera_id);
     const Camera& to = *posed->second;
     const Camera& from = found_in == cameras.end() ? to : found_in->second;
@@ -75,7 +79,7 @@ std::optional<Features> ModelPictures::ReadSeaPoints(int image_idx) {
   const auto stored = in_database_.find(ImageAt(image_idx).name);
   if (stored == in_database_.end()) return std::nullopt;
   const auto [id, x_scale, y_scale] = stored->second;
-  auto features = database_->ReadFeatures(id);
+  auto features = ReadFeatures(*database_, id);
   has_stored_.at(static_cast<size_t>(image_idx)) = features.has_value();
   if (!features || (x_scale == 1 && y_scale == 1)) return features;
   for (SeaPoint& point : features->points) {
@@ -102,9 +106,9 @@ std::optional<FeatureMatches> ModelPictures::ReadMatches(int image_idx1, int ima
     const uint32_t id1 = in_database_.at(ImageAt(image_idx1).name).image_id;
     const uint32_t id2 = in_database_.at(ImageAt(image_idx2).name).image_id;
     const ImagePair pair = std::minmax(id1, id2);
-    const bool verified = database_->HasMatches(pair);
-    FeatureMatches matches =
-        verified ? database_->ReadTwoViewGeometry(pair).inliers : database_->ReadMatches(pair);
+    const bool verified = HasMatches(*database_, pair);
+    FeatureMatches matches = verified ? ReadTwoViewGeometry(*database_, pair).inliers
+                                      : colmap_seapoint::ReadMatches(*database_, pair);
     if (!verified && matches.empty()) return std::nullopt;
     if (id1 > id2) {
       for (FeatureMatch& match : matches) std::swap(match.idx1, match.idx2);

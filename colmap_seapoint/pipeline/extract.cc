@@ -8,6 +8,9 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_features.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 
 namespace colmap_seapoint {
@@ -116,11 +119,11 @@ void RefuseForeignKeypoints(const std::string& database_path,
                             const std::vector<ReadablePicture>& pictures,
                             const ColmapDatabase& database) {
   std::map<std::string, uint32_t> ids;
-  for (const DatabaseImage& image : database.ReadImages()) ids[image.name] = image.image_id;
+  for (const DatabaseImage& image : ReadImages(database)) ids[image.name] = image.image_id;
   for (const ReadablePicture& picture : pictures) {
     const auto id = ids.find(picture.name);
-    if (id == ids.end() || !database.HasFeatures(id->second)) continue;
-    if (database.FeaturesFingerprint(id->second) && database.ReadFeatures(id->second)) continue;
+    if (id == ids.end() || !HasFeatures(database, id->second)) continue;
+    if (FeaturesFingerprint(database, id->second) && ReadFeatures(database, id->second)) continue;
     throw Error(database_path, "holds keypoints of other software for " + picture.name,
                 "choose a new --database_path: they are never overwritten, and one database holds "
                 "one kind of keypoints (partial_densifier needs none of ours in it)");
@@ -132,7 +135,7 @@ void ExtractAll(const Extractor& extractor, int num_threads,
                 RunReport* report) {
   std::vector<std::optional<std::string>> stored;
   for (const RegisteredPicture& picture : pictures) {
-    stored.push_back(database->FeaturesFingerprint(picture.image_id));
+    stored.push_back(FeaturesFingerprint(*database, picture.image_id));
   }
   const auto count = static_cast<int64_t>(pictures.size());
   int64_t num_unchanged = 0;
@@ -147,12 +150,12 @@ void ExtractAll(const Extractor& extractor, int num_threads,
         const RegisteredPicture& picture = pictures[static_cast<size_t>(i)];
         if (result.is_unchanged) {
           ++num_unchanged;
-          const auto features = database->ReadFeatures(picture.image_id);
+          const auto features = ReadFeatures(*database, picture.image_id);
           if (!features || features->points.empty()) result.reason = kNoSeaPoint;
         } else {
-          database->BeginTransaction();
-          database->WriteFeatures(picture.image_id, result.features, result.fingerprint);
-          database->CommitTransaction();
+          DatabaseTransaction transaction(database);
+          WriteFeatures(database, picture.image_id, result.features, result.fingerprint);
+          transaction.Commit();
         }
         if (result.reason.empty()) ++report->images_used;
         if (!result.reason.empty()) LeaveOut(picture.name, result.reason, report);

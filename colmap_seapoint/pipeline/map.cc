@@ -3,6 +3,9 @@
 #include <set>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/io/files/run_report_json.h"
 #include "colmap_seapoint/pipeline/workspace_database.h"
 
@@ -12,9 +15,9 @@ namespace {
 // Pictures with a verified pair.
 std::vector<std::string> MatchedPictures(const ColmapDatabase& database) {
   std::set<uint32_t> ids;
-  for (const ImagePair& pair : database.ReadVerifiedPairs()) ids.insert({pair.first, pair.second});
+  for (const ImagePair& pair : ReadVerifiedPairs(database)) ids.insert({pair.first, pair.second});
   std::vector<std::string> names;
-  for (const DatabaseImage& image : database.ReadImages()) {
+  for (const DatabaseImage& image : ReadImages(database)) {
     if (ids.count(image.image_id) > 0) names.push_back(image.name);
   }
   return names;

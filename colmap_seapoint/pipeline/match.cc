@@ -5,6 +5,9 @@
 #include <set>
 
 #include "colmap_seapoint/base/natural_order.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/pairing/loop_pairs.h"
 #include "colmap_seapoint/pairing/match_pairs.h"
 #include "feature/matching/overlap_share.h"

@@ -5,6 +5,9 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/base/run_options.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_features.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/files/content_hash.h"
 #include "colmap_seapoint/io/files/run_report.h"
 
@@ -29,16 +32,16 @@ void RemoveDatabase(const fs::path& path) {
 void CopyFeatures(const ColmapDatabase& from, const std::vector<RegisteredPicture>& pictures,
                   ColmapDatabase* to) {
   std::map<std::string, uint32_t> old_ids;
-  for (const DatabaseImage& image : from.ReadImages()) old_ids[image.name] = image.image_id;
-  to->BeginTransaction();
+  for (const DatabaseImage& image : ReadImages(from)) old_ids[image.name] = image.image_id;
+  DatabaseTransaction transaction(to);
   for (const RegisteredPicture& picture : pictures) {
     const auto old_id = old_ids.find(picture.name);
     if (old_id == old_ids.end()) continue;
-    const auto fingerprint = from.FeaturesFingerprint(old_id->second);
-    const auto features = from.ReadFeatures(old_id->second);
-    if (fingerprint && features) to->WriteFeatures(picture.image_id, *features, *fingerprint);
+    const auto fingerprint = FeaturesFingerprint(from, old_id->second);
+    const auto features = ReadFeatures(from, old_id->second);
+    if (fingerprint && features) WriteFeatures(to, picture.image_id, *features, *fingerprint);
   }
-  to->CommitTransaction();
+  transaction.Commit();
 }
 
 // Beside its place and renamed: a run that is killed meanwhile begins anew.
@@ -81,13 +84,13 @@ ColmapDatabase OpenWorkspaceDatabase(const fs::path& database_path,
 
 std::string DatabaseFingerprint(const ColmapDatabase& database) {
   std::string text;
-  for (const DatabaseImage& image : database.ReadImages()) {
+  for (const DatabaseImage& image : ReadImages(database)) {
     text += std::to_string(image.image_id) + " " + std::to_string(image.camera_id) + " " +
-            image.name + " " + database.FeaturesFingerprint(image.image_id).value_or("") + "\n";
+            image.name + " " + FeaturesFingerprint(database, image.image_id).value_or("") + "\n";
   }
   ContentHash hash;
   hash.Add(text.data(), text.size());
-  for (const auto& [camera_id, camera] : database.ReadCameras()) {
+  for (const auto& [camera_id, camera] : ReadCameras(database)) {
     const int numbers[] = {static_cast<int>(camera_id), static_cast<int>(camera.model),
                            camera.width, camera.height, camera.has_prior_focal_length ? 1 : 0};
     hash.Add(numbers, sizeof(numbers));

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
 #include "tests/cli/cli_runner.h"
 #include "tests/cli/database_tables.h"
 #include "tests/cli/synthetic_strip.h"
@@ -168,7 +170,7 @@ TEST_F(BadDatabase, KeypointsOfOtherSoftwareAreNeverOverwritten) {
   EXPECT_NE(result.LastErrorLine().find("new --database_path"), std::string::npos);
   EXPECT_NE(Match().LastErrorLine().find("feature_extractor"), std::string::npos);
   Execute("DELETE FROM images WHERE 0 = (SELECT count(*) FROM keypoints WHERE rows = 2)");
-  EXPECT_EQ(ColmapDatabase(Database(), ColmapDatabase::Mode::kReadOnly).ReadImages().size(), 2u);
+  EXPECT_EQ(ReadImages(ColmapDatabase(Database(), ColmapDatabase::Mode::kReadOnly)).size(), 2u);
 }
 
 TEST_F(BadDatabase, ImageNamesThatLeadOutside) {
@@ -202,19 +204,19 @@ TEST_F(BadDatabase, MatchersGoOnWhereTheyStopped) {
     // Natural order: img2 is followed by img3, not by img10. Ids are in bytewise order:
     // 1 img1, 2 img10, 3 img11, 4 img12, 5 img2, 6 img3 ...
     const ColmapDatabase database(Database(), ColmapDatabase::Mode::kReadOnly);
-    EXPECT_TRUE(database.HasMatches({1, 5}));
-    EXPECT_TRUE(database.HasMatches({5, 6}));
-    EXPECT_TRUE(database.HasMatches({2, 12}));
-    EXPECT_FALSE(database.HasMatches({1, 2}));
-    const TwoViewGeometry geometry = database.ReadTwoViewGeometry({5, 6});
+    EXPECT_TRUE(HasMatches(database, {1, 5}));
+    EXPECT_TRUE(HasMatches(database, {5, 6}));
+    EXPECT_TRUE(HasMatches(database, {2, 12}));
+    EXPECT_FALSE(HasMatches(database, {1, 2}));
+    const TwoViewGeometry geometry = ReadTwoViewGeometry(database, {5, 6});
     EXPECT_GT(geometry.inliers.size(), 100u);
-    EXPECT_GE(database.ReadMatches({5, 6}).size(), geometry.inliers.size());
+    EXPECT_GE(ReadMatches(database, {5, 6}).size(), geometry.inliers.size());
   }
   const CliResult result = sequential("3");
   EXPECT_EQ(result.exit_code, 0) << result.Text();
   EXPECT_NE(result.err.find("11 pairs were there already"), std::string::npos) << result.Text();
   EXPECT_NE(Match().err.find("30 pairs were there already"), std::string::npos);
-  EXPECT_EQ(ColmapDatabase(Database(), ColmapDatabase::Mode::kReadOnly).HasMatches({3, 11}), true);
+  EXPECT_EQ(HasMatches(ColmapDatabase(Database(), ColmapDatabase::Mode::kReadOnly), {3, 11}), true);
 }
 
 }  // namespace

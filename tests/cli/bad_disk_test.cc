@@ -10,6 +10,7 @@
 
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
 #include "tests/cli/cli_runner.h"
 #include "tests/cli/synthetic_strip.h"
 
@@ -122,7 +123,7 @@ TEST_F(BadDisk, FullDisk) {
   const fs::path database = folder_ / "disk" / "database.db";
   ExpectFailure(RunProgram(SEAPOINT_PROGRAM, Extract(database)), database.string());
   // What was committed before is whole.
-  { EXPECT_EQ(ColmapDatabase(database, ColmapDatabase::Mode::kReadOnly).ReadImages().size(), 4u); }
+  { EXPECT_EQ(ReadImages(ColmapDatabase(database, ColmapDatabase::Mode::kReadOnly)).size(), 4u); }
   for (const auto& entry : fs::directory_iterator(folder_ / "disk")) fs::remove_all(entry.path());
   ExpectFailure(RunProgram(SEAPOINT_PROGRAM, Densify(folder_ / "disk" / "dense")), "fused.ply");
   EXPECT_FALSE(fs::exists(folder_ / "disk" / "dense" / "fused.ply"));

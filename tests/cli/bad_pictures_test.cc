@@ -6,6 +6,9 @@
 #include <vector>
 
 #include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_features.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/io/files/content_hash.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "tests/cli/cli_runner.h"
@@ -75,16 +78,16 @@ TEST_F(Extractor, FindsPicturesInSubFolders) {
   ASSERT_EQ(result.exit_code, 0) << result.Text();
   EXPECT_EQ(result.out, "");
   const ColmapDatabase database = Open();
-  const auto images = database.ReadImages();
+  const auto images = ReadImages(database);
   ASSERT_EQ(images.size(), 4u);
   EXPECT_EQ(images[0].name, "dive 1/left/b1.png");
   EXPECT_EQ(images[3].name, "img2.png");
   EXPECT_EQ(images[0].camera_id, images[1].camera_id);
   EXPECT_NE(images[0].camera_id, images[2].camera_id);  // one camera a folder
   for (const DatabaseImage& image : images) {
-    EXPECT_GT(database.ReadFeatures(image.image_id).value().points.size(), 500u);
+    EXPECT_GT(ReadFeatures(database, image.image_id).value().points.size(), 500u);
   }
-  const Camera camera = database.ReadCameras().at(1);
+  const Camera camera = ReadCameras(database).at(1);
   EXPECT_EQ(camera.model, CameraModel::kOpenCV);
   EXPECT_FALSE(camera.has_prior_focal_length);
   EXPECT_DOUBLE_EQ(camera.FocalX(), 1.2 * kStripWidth);
@@ -105,21 +108,21 @@ TEST_F(Extractor, CameraOptionsAreColmaps) {
                 .exit_code,
             0);
   {
-    const auto cameras = Open().ReadCameras();
+    const auto cameras = ReadCameras(Open());
     ASSERT_EQ(cameras.size(), 1u);
     EXPECT_TRUE(cameras.at(1).has_prior_focal_length);
     EXPECT_EQ(cameras.at(1).params, (std::vector<double>{500, 501, 200, 150}));
   }
   std::filesystem::remove(Database());
   ASSERT_EQ(Extract({"--ImageReader.single_camera_per_folder", "0"}).exit_code, 0);
-  EXPECT_EQ(Open().ReadCameras().size(), 3u);
+  EXPECT_EQ(ReadCameras(Open()).size(), 3u);
 }
 
 TEST_F(Extractor, TakesTheListedPicturesOnly) {
   WriteStrip(Images(), 3);
   WriteBytes(folder_ / "list.txt", "# two of three\nimg3.png\n\nimg1.png\nimg3.png\n");
   ASSERT_EQ(Extract({"--image_list_path", (folder_ / "list.txt").string()}).exit_code, 0);
-  EXPECT_EQ(Open().ReadImages().size(), 2u);
+  EXPECT_EQ(ReadImages(Open()).size(), 2u);
   WriteBytes(folder_ / "list.txt", "img1.png\n../img2.png\n");
   const CliResult result = Extract({"--image_list_path", (folder_ / "list.txt").string()});
   EXPECT_EQ(result.exit_code, 1) << result.Text();
@@ -165,9 +168,9 @@ TEST_F(Extractor, LeavesOutWhatIsBrokenAndGoesOn) {
   EXPECT_EQ(Report()["images_used"], 3);
   {
     const ColmapDatabase database = Open();
-    for (const DatabaseImage& image : database.ReadImages()) {
+    for (const DatabaseImage& image : ReadImages(database)) {
       // An empty row: otherwise COLMAP's own extractor would add SIFT to it.
-      EXPECT_TRUE(database.HasFeatures(image.image_id)) << image.name;
+      EXPECT_TRUE(HasFeatures(database, image.image_id)) << image.name;
     }
   }
   // Once more: the same answer.
@@ -195,7 +198,7 @@ TEST_F(Extractor, MixedSizesGetTheirOwnCameras) {
   }
   WriteImage(Images() / "narrow.png", narrow);
   ASSERT_EQ(Extract().exit_code, 0);
-  EXPECT_EQ(Open().ReadCameras().size(), 2u);
+  EXPECT_EQ(ReadCameras(Open()).size(), 2u);
   std::filesystem::remove(Database());
   ExpectLeftOut(Extract({"--ImageReader.single_camera", "1"}), {{"narrow.png", "200x300"}});
 }
@@ -212,7 +215,7 @@ TEST_F(Extractor, ExifRotationIsOneWarning) {
   EXPECT_NE(warning, std::string::npos) << result.Text();
   EXPECT_EQ(result.err.find("warning: ", warning + 1), std::string::npos) << result.Text();
   // As stored: 400 wide, not 300.
-  for (const auto& [id, camera] : Open().ReadCameras()) EXPECT_EQ(camera.width, kStripWidth);
+  for (const auto& [id, camera] : ReadCameras(Open())) EXPECT_EQ(camera.width, kStripWidth);
 }
 
 TEST_F(Extractor, SkipsWhatIsUnchangedAndRedoesWhatChanged) {
@@ -225,8 +228,8 @@ TEST_F(Extractor, SkipsWhatIsUnchangedAndRedoesWhatChanged) {
     TwoViewGeometry geometry;
     geometry.config = TwoViewConfig::kUncalibrated;
     geometry.inliers = {{0, 0}};
-    database.WriteMatches(1, 2, {{0, 0}}, geometry);
-    database.WriteMatches(2, 3, {{0, 0}}, geometry);
+    WriteMatches(&database, 1, 2, {{0, 0}}, geometry);
+    WriteMatches(&database, 2, 3, {{0, 0}}, geometry);
   }
   WriteImage(Images() / "img1.png", StripPicture(9));
   result = Extract();
@@ -234,13 +237,13 @@ TEST_F(Extractor, SkipsWhatIsUnchangedAndRedoesWhatChanged) {
   EXPECT_NE(result.err.find("2 pictures were there already"), std::string::npos) << result.Text();
   {
     const ColmapDatabase database = Open();
-    EXPECT_FALSE(database.HasMatches({1, 2}));  // of the changed picture
-    EXPECT_TRUE(database.HasMatches({2, 3}));
+    EXPECT_FALSE(HasMatches(database, {1, 2}));  // of the changed picture
+    EXPECT_TRUE(HasMatches(database, {2, 3}));
   }
   result = Extract({"--SeaPointExtraction.min_num_features", "100",
                     "--SeaPointExtraction.max_num_features", "200"});
   EXPECT_EQ(result.err.find("there already"), std::string::npos) << result.Text();
-  EXPECT_LE(Open().ReadFeatures(2).value().points.size(), 200u);
+  EXPECT_LE(ReadFeatures(Open(), 2).value().points.size(), 200u);
 }
 
 // Another descriptor is another option: everything is extracted again, and a mixed database works.
@@ -252,7 +255,7 @@ TEST_F(Extractor, EitherDescriptor) {
   const std::string option = "--SeaPointExtraction.descriptor";
   EXPECT_EQ(Extract({option, "surf"}).exit_code, 2);
   ASSERT_EQ(Extract({option, "rbrief"}).exit_code, 0);
-  EXPECT_TRUE(Open().ReadFeatures(1).value().sift_descriptors.empty());
+  EXPECT_TRUE(ReadFeatures(Open(), 1).value().sift_descriptors.empty());
   CliResult result =
       Extract({option, "sift", "--image_list_path", WriteList("img1.png\nimg2.png")});
   ASSERT_EQ(result.exit_code, 0) << result.Text();
@@ -260,23 +263,23 @@ TEST_F(Extractor, EitherDescriptor) {
   {
     const ColmapDatabase database = Open();
     for (const uint32_t id : {1u, 2u}) {
-      const Features features = database.ReadFeatures(id).value();
+      const Features features = ReadFeatures(database, id).value();
       EXPECT_EQ(features.sift_descriptors.size(), features.points.size());
     }
-    EXPECT_TRUE(database.ReadFeatures(3).value().sift_descriptors.empty());
+    EXPECT_TRUE(ReadFeatures(database, 3).value().sift_descriptors.empty());
   }
   // Nothing is left to match rBRIEF by: only the pair that has SIFT is matched.
   result = RunProgram(SEAPOINT_PROGRAM,
                       {"exhaustive_matcher", "--database_path", Database().string(),
                        "--SeaPointMatching.max_distance", "0", "--SeaPointMatching.guided", "0"});
   EXPECT_EQ(result.exit_code, 0) << result.Text();
-  EXPECT_GT(Open().ReadMatches({1, 2}).size(), 200u);
-  EXPECT_LT(Open().ReadMatches({2, 3}).size(), 20u);
+  EXPECT_GT(ReadMatches(Open(), {1, 2}).size(), 200u);
+  EXPECT_LT(ReadMatches(Open(), {2, 3}).size(), 20u);
   ASSERT_EQ(Extract({option, "sift"}).exit_code, 0);
   result =
       RunProgram(SEAPOINT_PROGRAM, {"sequential_matcher", "--database_path", Database().string()});
   EXPECT_EQ(result.exit_code, 0) << result.Text();
-  EXPECT_GT(Open().ReadTwoViewGeometry({2, 3}).inliers.size(), 200u);
+  EXPECT_GT(ReadTwoViewGeometry(Open(), {2, 3}).inliers.size(), 200u);
 }
 
 TEST_F(Extractor, MasksKeepSeaPointsAway) {
@@ -291,7 +294,7 @@ TEST_F(Extractor, MasksKeepSeaPointsAway) {
   const ColmapDatabase database = Open();
   float leftmost[2] = {1e9f, 1e9f};
   for (uint32_t id : {1u, 2u}) {
-    const Features features = database.ReadFeatures(id).value();
+    const Features features = ReadFeatures(database, id).value();
     for (const SeaPoint& point : features.points) {
       leftmost[id - 1] = std::min(leftmost[id - 1], point.x);
     }
@@ -307,13 +310,13 @@ TEST_F(Extractor, SameDatabaseForAnyNumberOfThreads) {
   std::vector<Features> one;
   {
     const ColmapDatabase database = Open();
-    for (uint32_t id = 1; id <= 6; ++id) one.push_back(database.ReadFeatures(id).value());
+    for (uint32_t id = 1; id <= 6; ++id) one.push_back(ReadFeatures(database, id).value());
   }
   std::filesystem::remove(Database());
   ASSERT_EQ(Extract({"--num_threads", "3"}).exit_code, 0);
   const ColmapDatabase database = Open();
   for (uint32_t id = 1; id <= 6; ++id) {
-    EXPECT_EQ(database.ReadFeatures(id).value().descriptors, one[id - 1].descriptors);
+    EXPECT_EQ(ReadFeatures(database, id).value().descriptors, one[id - 1].descriptors);
   }
 }
 

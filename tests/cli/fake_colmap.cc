@@ -24,6 +24,9 @@
 #include "colmap_seapoint/base/natural_order.h"
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/colmap/database_features.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
 #include "tests/cli/synthetic_strip.h"
 
 namespace {
@@ -51,7 +54,7 @@ PosedImage PoseImage(const DatabaseImage& image, const Camera& camera,
   posed.camera_id = image.camera_id;
   posed.name = image.name;
   posed.cam_from_world = StripPose(image.name, camera);
-  const auto features = database.ReadFeatures(image.image_id);
+  const auto features = ReadFeatures(database, image.image_id);
   if (features) {
     for (const SeaPoint& point : features->points) posed.points2D.emplace_back(point.x, point.y);
   }
@@ -65,7 +68,7 @@ void AddPoints(const ColmapDatabase& database, SparseModel* model) {
     PosedImage* images[] = {&model->images[i], &model->images[i + 1]};
     if (images[0]->image_id > images[1]->image_id) std::swap(images[0], images[1]);
     const Camera& camera = model->cameras.at(images[0]->camera_id);
-    const auto geometry = database.ReadTwoViewGeometry({images[0]->image_id, images[1]->image_id});
+    const auto geometry = ReadTwoViewGeometry(database, {images[0]->image_id, images[1]->image_id});
     for (const FeatureMatch& match : geometry.inliers) {
       if (images[0]->point3D_ids[match.idx1] != kNoPoint3D) continue;
       if (images[1]->point3D_ids[match.idx2] != kNoPoint3D) continue;
@@ -86,7 +89,7 @@ void AddPoints(const ColmapDatabase& database, SparseModel* model) {
 void WriteModel(const std::vector<DatabaseImage>& images, const ColmapDatabase& database,
                 const std::string& folder) {
   SparseModel model;
-  model.cameras = database.ReadCameras();
+  model.cameras = ReadCameras(database);
   for (const DatabaseImage& image : images) {
     model.images.push_back(PoseImage(image, model.cameras.at(image.camera_id), database));
   }
@@ -96,8 +99,8 @@ void WriteModel(const std::vector<DatabaseImage>& images, const ColmapDatabase& 
 
 std::vector<DatabaseImage> ImagesInOrder(const ColmapDatabase& database) {
   std::vector<DatabaseImage> images;
-  for (const DatabaseImage& image : database.ReadImages()) {
-    const auto features = database.ReadFeatures(image.image_id);
+  for (const DatabaseImage& image : ReadImages(database)) {
+    const auto features = ReadFeatures(database, image.image_id);
     if (features && !features->points.empty()) images.push_back(image);
   }
   std::sort(images.begin(), images.end(),

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "tests/cli/cli_runner.h"
 #include "tests/cli/synthetic_strip.h"
@@ -78,7 +79,7 @@ class LoopDetection : public testing::Test {
   static std::multiset<int> Distances(const fs::path& path) {
     const ColmapDatabase database(path, ColmapDatabase::Mode::kReadOnly);
     std::multiset<int> distances;
-    for (const ImagePair& pair : database.ReadVerifiedPairs()) {
+    for (const ImagePair& pair : ReadVerifiedPairs(database)) {
       distances.insert(static_cast<int>(pair.second) - static_cast<int>(pair.first));
     }
     return distances;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "tests/cli/cli_runner.h"
 #include "tests/cli/synthetic_strip.h"
@@ -61,7 +62,7 @@ class SpatialMatcher : public testing::Test {
     std::set<ImagePair> rows;
     for (uint32_t i = 1; i <= kNumPictures; ++i) {
       for (uint32_t j = i + 1; j <= kNumPictures; ++j) {
-        if (database.HasMatches({i, j})) rows.insert({i, j});
+        if (HasMatches(database, {i, j})) rows.insert({i, j});
       }
     }
     return rows;
@@ -86,7 +87,7 @@ TEST_F(SpatialMatcher, MatchesWhatIsNear) {
   ASSERT_EQ(result.exit_code, 0) << result.Text();
   EXPECT_EQ(Rows(), kNeighbours);
   const ColmapDatabase database(Database(), ColmapDatabase::Mode::kReadOnly);
-  EXPECT_EQ(database.ReadVerifiedPairs().size(), kNeighbours.size());
+  EXPECT_EQ(ReadVerifiedPairs(database).size(), kNeighbours.size());
   // Once more, and further: what is there stays.
   const CliResult again =
       Match({"--SpatialMatching.positions_path", Table(), "--SpatialMatching.max_distance", "2.5"});

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "colmap_seapoint/base/features.h"
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "test_files.h"
 

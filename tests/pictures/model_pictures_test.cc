@@ -1,5 +1,9 @@
 #include "colmap_seapoint/pictures/model_pictures.h"
 
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_features.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
 #include "tests/io/test_database.h"
 
 namespace colmap_seapoint {
@@ -12,17 +16,17 @@ class ModelPicturesTest : public testing::Test {
   ModelPicturesTest() : path_(dir_ / "database.db") {
     ColmapDatabase database(path_, ColmapDatabase::Mode::kCreateIfMissing);
     const Camera camera = MakeCamera(CameraModel::kPinhole, 500, 640, 480);
-    const uint32_t camera_id = database.AddCamera(camera);
+    const uint32_t camera_id = AddCamera(&database, camera);
     for (const std::string name : {"d", "c", "b", "a"}) {
-      ids_[name] = database.AddImage(name, camera_id);
-      database.WriteFeatures(ids_[name], MakeFeatures(9, ids_[name]), "picture");
+      ids_[name] = AddImage(&database, name, camera_id);
+      WriteFeatures(&database, ids_[name], MakeFeatures(9, ids_[name]), "picture");
     }
-    database.WriteMatches(ids_["a"], ids_["b"], {{1, 2}, {3, 4}, {5, 6}},
-                          MakeGeometry({{1, 2}, {5, 6}}));
+    WriteMatches(&database, ids_["a"], ids_["b"], {{1, 2}, {3, 4}, {5, 6}},
+                 MakeGeometry({{1, 2}, {5, 6}}));
     TwoViewGeometry failed;  // as our matchers say it
     failed.config = TwoViewConfig::kDegenerate;
-    database.WriteMatches(ids_["a"], ids_["c"], {{7, 8}}, failed);
-    database.WriteMatches(ids_["b"], ids_["c"], {{0, 8}, {2, 1}}, TwoViewGeometry());
+    WriteMatches(&database, ids_["a"], ids_["c"], {{7, 8}}, failed);
+    WriteMatches(&database, ids_["b"], ids_["c"], {{0, 8}, {2, 1}}, TwoViewGeometry());
     Execute(path_,
             "DELETE FROM two_view_geometries WHERE pair_id = (SELECT pair_id FROM matches "
             "WHERE rows = 2)");

@@ -46,7 +46,7 @@ struct TableShape {
   std::vector<const char*> optional;  // we may fill them
 };
 
-// Of every version from 3.8 on.
+// In every version from 3.8 on.
 const TableShape kTables[] = {
     {"cameras", {"camera_id", "model", "width", "height", "params", "prior_focal_length"}, {}},
     {"images", {"image_id", "name", "camera_id"}, {}},
@@ -57,7 +57,7 @@ const TableShape kTables[] = {
      {"pair_id", "rows", "cols", "data", "config", "F", "E", "H"},
      {"qvec", "tvec"}}};
 
-// Of 3.12 and later: all of them or none. Two have no key.
+// In 3.12 and later: all of them or none. Two have no key.
 const TableShape kFrameTables[] = {
     {"rigs", {"rig_id", "ref_sensor_id", "ref_sensor_type"}, {}},
     {"rig_sensors", {"rig_id", "sensor_id", "sensor_type", "sensor_from_rig"}, {}},
@@ -79,8 +79,8 @@ struct Column {
 
 class SchemaChecker {
  public:
-  SchemaChecker(const std::string& path, sqlite3* db, bool to_be_written)
-      : path_(path), db_(db), to_be_written_(to_be_written) {}
+  SchemaChecker(const SqlConnection& connection, bool to_be_written)
+      : connection_(connection), to_be_written_(to_be_written) {}
 
   bool Exists(const std::string& table) const { return !KindOf(table).empty(); }
 
@@ -111,7 +111,7 @@ class SchemaChecker {
   }
 
   [[noreturn]] void Refuse(const std::string& why) const {
-    throw Error(path_, "is no COLMAP database that we know: " + why, kRemedy);
+    throw Error(connection_.path, "is no COLMAP database that we know: " + why, kRemedy);
   }
 
  private:
@@ -129,27 +129,27 @@ class SchemaChecker {
 
   // "table", "view"; empty when there is none.
   std::string KindOf(const std::string& table) const {
-    SqlStatement row(path_, db_,
+    SqlStatement row(connection_,
                      "SELECT type FROM sqlite_master WHERE name = ? AND type IN('table', 'view')");
     row.Bind(table);
-    return row.Step() ? row.Text(0) : "";
+    return row.Step() ? row[0].Text() : "";
   }
 
   std::vector<Column> ColumnsOf(const std::string& table) const {
     std::vector<Column> columns;
     int64_t num_keys = 0;
-    SqlStatement rows(path_, db_, "PRAGMA table_info(" + table + ")");
+    SqlStatement rows(connection_, "PRAGMA table_info(" + table + ")");
     while (rows.Step()) {
       Column column;
-      column.name = rows.Text(1);
-      std::string type = rows.Text(2);
+      column.name = rows[1].Text();
+      std::string type = rows[2].Text();
       std::transform(type.begin(), type.end(), type.begin(), [](char c) {
         return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
       });
-      const bool is_key = rows.Int(5) > 0;
+      const bool is_key = rows[5].Int() > 0;
       if (is_key) ++num_keys;
       column.is_row_key = is_key && type == "INTEGER";
-      column.must_be_given = rows.Int(3) != 0 && rows.IsNull(4) && !column.is_row_key;
+      column.must_be_given = rows[3].Int() != 0 && rows[4].IsNull() && !column.is_row_key;
       columns.push_back(column);
     }
     if (num_keys > 1) {
@@ -158,15 +158,14 @@ class SchemaChecker {
     return columns;
   }
 
-  const std::string& path_;
-  sqlite3* db_;
+  const SqlConnection& connection_;
   bool to_be_written_;
 };
 
 }  // namespace
 
-SchemaExtras CheckSchema(const std::string& path, sqlite3* db, bool to_be_written) {
-  const SchemaChecker checker(path, db, to_be_written);
+SchemaExtras CheckSchema(const SqlConnection& connection, bool to_be_written) {
+  const SchemaChecker checker(connection, to_be_written);
   for (const TableShape& table : kTables) checker.Check(table, true);
   SchemaExtras extras;
   extras.has_descriptor_type = checker.HasColumn("descriptors", "type");

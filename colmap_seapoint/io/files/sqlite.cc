@@ -39,66 +39,101 @@ Diagnosis Diagnose(int code) {
   }
 }
 
+std::string FirstWords(const std::string& sql) { return sql.substr(0, sql.find('(')); }
+
 }  // namespace
 
-void ThrowSqliteError(const std::string& path, sqlite3* db, int code,
-                      const std::string& while_doing) {
+void ThrowSqliteError(const SqlConnection& connection, int code, const std::string& while_doing) {
   const Diagnosis diagnosis = Diagnose(code);
   std::string detail = while_doing;
-  if (db != nullptr) detail += std::string(": ") + sqlite3_errmsg(db);
+  if (connection.handle != nullptr) detail += std::string(": ") + sqlite3_errmsg(connection.handle);
   std::replace(detail.begin(), detail.end(), '\n', ' ');
-  throw Error(path, diagnosis.finding + " (" + detail + ")", diagnosis.remedy);
+  throw Error(connection.path, diagnosis.finding + " (" + detail + ")", diagnosis.remedy);
 }
 
-void RunSql(const std::string& path, sqlite3* db, const std::string& sql) {
-  const int code = sqlite3_exec(db, sql.c_str(), nullptr, nullptr, nullptr);
-  if (code != SQLITE_OK) ThrowSqliteError(path, db, code, sql.substr(0, sql.find('(')));
+void RunSql(const SqlConnection& connection, const std::string& sql) {
+  const int code = sqlite3_exec(connection.handle, sql.c_str(), nullptr, nullptr, nullptr);
+  if (code != SQLITE_OK) ThrowSqliteError(connection, code, FirstWords(sql));
 }
 
-SqlStatement::SqlStatement(const std::string& path, sqlite3* db, const std::string& sql)
-    : path_(path), db_(db), sql_(sql) {
-  const int code = sqlite3_prepare_v2(db, sql.c_str(), -1, &statement_, nullptr);
-  if (code != SQLITE_OK) ThrowSqliteError(path, db, code, sql_.substr(0, sql_.find('(')));
+std::string SqlColumn::Text() const {
+  const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_, index_));
+  if (text == nullptr) return {};
+  return std::string(text, Size());
 }
 
-void SqlStatement::CheckBind(int code) {
+SqlStatement::SqlStatement(const SqlConnection& connection, const std::string& sql)
+    : connection_(connection), sql_(sql) {
+  const int code = sqlite3_prepare_v2(connection.handle, sql.c_str(), -1, &statement_, nullptr);
+  if (code != SQLITE_OK) ThrowSqliteError(connection_, code, FirstWords(sql_));
+}
+
+SqlStatement& SqlStatement::Bound(int code) {
+  if (code != SQLITE_OK) ThrowSqliteError(connection_, code, FirstWords(sql_));
   ++next_parameter_;
-  if (code != SQLITE_OK) ThrowSqliteError(path_, db_, code, sql_.substr(0, sql_.find('(')));
+  return *this;
 }
 
 SqlStatement& SqlStatement::Bind(int64_t value) {
-  CheckBind(sqlite3_bind_int64(statement_, next_parameter_, value));
-  return *this;
+  return Bound(sqlite3_bind_int64(statement_, next_parameter_, value));
 }
 
 SqlStatement& SqlStatement::Bind(const std::string& text) {
-  CheckBind(sqlite3_bind_text64(statement_, next_parameter_, text.data(), text.size(),
-                                SQLITE_STATIC, SQLITE_UTF8));
-  return *this;
+  return Bound(sqlite3_bind_text64(statement_, next_parameter_, text.data(), text.size(),
+                                   SQLITE_STATIC, SQLITE_UTF8));
 }
 
 SqlStatement& SqlStatement::BindBlob(const void* data, size_t size) {
   const void* const not_null = size == 0 ? "" : data;
-  CheckBind(sqlite3_bind_blob64(statement_, next_parameter_, not_null, size, SQLITE_STATIC));
-  return *this;
+  return Bound(sqlite3_bind_blob64(statement_, next_parameter_, not_null, size, SQLITE_STATIC));
 }
 
 SqlStatement& SqlStatement::BindNull() {
-  CheckBind(sqlite3_bind_null(statement_, next_parameter_));
-  return *this;
+  return Bound(sqlite3_bind_null(statement_, next_parameter_));
 }
 
 bool SqlStatement::Step() {
   const int code = sqlite3_step(statement_);
   if (code == SQLITE_ROW) return true;
   if (code == SQLITE_DONE) return false;
-  ThrowSqliteError(path_, db_, code, sql_.substr(0, sql_.find('(')));
+  ThrowSqliteError(connection_, code, FirstWords(sql_));
 }
 
-std::string SqlStatement::Text(int column) const {
-  const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_, column));
-  if (text == nullptr) return {};
-  return std::string(text, BlobSize(column));
+int64_t LastRowId(const SqlConnection& connection) {
+  return sqlite3_last_insert_rowid(connection.handle);
+}
+
+bool HasColumn(const SqlConnection& connection, const std::string& table,
+               const std::string& column) {
+  SqlStatement columns(connection, "PRAGMA table_info(" + table + ")");
+  while (columns.Step()) {
+    if (columns[1].Text() == column) return true;
+  }
+  return false;
+}
+
+bool HasRows(const SqlConnection& connection, const std::string& table) {
+  return SqlStatement(connection, "SELECT 1 FROM " + table + " LIMIT 1").Step();
+}
+
+bool HasRow(const SqlConnection& connection, const std::string& sql, int64_t id) {
+  return SqlStatement(connection, sql).Bind(id).Step();
+}
+
+SqlSavepoint::SqlSavepoint(const SqlConnection& connection) : connection_(connection) {
+  RunSql(connection_, "SAVEPOINT seapoint");
+}
+
+SqlSavepoint::~SqlSavepoint() {
+  // SQLite has rolled back already after some errors (e.g. a full disk).
+  if (is_released_ || sqlite3_get_autocommit(connection_.handle) != 0) return;
+  sqlite3_exec(connection_.handle, "ROLLBACK TO seapoint; RELEASE seapoint", nullptr, nullptr,
+               nullptr);
+}
+
+void SqlSavepoint::Release() {
+  RunSql(connection_, "RELEASE seapoint");
+  is_released_ = true;
 }
 
 }  // namespace colmap_seapoint

@@ -1,5 +1,5 @@
 // A thin cover over SQLite's C functions: every failure becomes an Error that names the file, what
-// was found and what to do. For colmap_database*.cc only.
+// was found and what to do. Only io/colmap uses it.
 #pragma once
 
 #include <sqlite3.h>
@@ -9,15 +9,42 @@
 
 namespace colmap_seapoint {
 
-// `while_doing`: "reading keypoints". Uses the connection's last error code.
-[[noreturn]] void ThrowSqliteError(const std::string& path, sqlite3* db, int code,
+// An open database and the path by which errors name it. Whoever opened it closes it.
+struct SqlConnection {
+  std::string path;
+  sqlite3* handle = nullptr;
+};
+
+// `code`: what SQLite returned; `while_doing`: what was tried, e.g. "reading keypoints". The text
+// of the connection's last error is added.
+[[noreturn]] void ThrowSqliteError(const SqlConnection& connection, int code,
                                    const std::string& while_doing);
 
-void RunSql(const std::string& path, sqlite3* db, const std::string& sql);
+// For statements that take no parameters and whose rows nobody reads.
+void RunSql(const SqlConnection& connection, const std::string& sql);
 
+// One column of the row that SqlStatement::Step() has reached; void after the next Step().
+class SqlColumn {
+ public:
+  SqlColumn(sqlite3_stmt* statement, int index) : statement_(statement), index_(index) {}
+
+  bool IsNull() const { return sqlite3_column_type(statement_, index_) == SQLITE_NULL; }
+  int64_t Int() const { return sqlite3_column_int64(statement_, index_); }
+  double Real() const { return sqlite3_column_double(statement_, index_); }
+  std::string Text() const;  // "" for NULL
+  const void* Blob() const { return sqlite3_column_blob(statement_, index_); }
+  // Bytes of the blob or text.
+  size_t Size() const { return static_cast<size_t>(sqlite3_column_bytes(statement_, index_)); }
+
+ private:
+  sqlite3_stmt* statement_;
+  int index_;
+};
+
+// The connection must outlive the statement.
 class SqlStatement {
  public:
-  SqlStatement(const std::string& path, sqlite3* db, const std::string& sql);
+  SqlStatement(const SqlConnection& connection, const std::string& sql);
   ~SqlStatement() { sqlite3_finalize(statement_); }
   SqlStatement(const SqlStatement&) = delete;
   SqlStatement& operator=(const SqlStatement&) = delete;
@@ -34,50 +61,39 @@ class SqlStatement {
     }
   }
 
-  int64_t Int(int column) const { return sqlite3_column_int64(statement_, column); }
-  double Real(int column) const { return sqlite3_column_double(statement_, column); }
-  bool IsNull(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_NULL; }
-  bool IsInteger(int column) const {
-    return sqlite3_column_type(statement_, column) == SQLITE_INTEGER;
-  }
-  std::string Text(int column) const;
-  const void* Blob(int column) const { return sqlite3_column_blob(statement_, column); }
-  size_t BlobSize(int column) const {
-    return static_cast<size_t>(sqlite3_column_bytes(statement_, column));
-  }
+  SqlColumn operator[](int column) const { return {statement_, column}; }
 
  private:
-  void CheckBind(int code);
+  SqlStatement& Bound(int code);
 
-  const std::string& path_;
-  sqlite3* db_;
+  const SqlConnection& connection_;
   std::string sql_;
   sqlite3_stmt* statement_ = nullptr;
   int next_parameter_ = 1;
 };
 
+// The key of the row that was inserted last.
+int64_t LastRowId(const SqlConnection& connection);
+
+bool HasColumn(const SqlConnection& connection, const std::string& table,
+               const std::string& column);
+bool HasRows(const SqlConnection& connection, const std::string& table);
+// `sql`: a query of one parameter, an id.
+bool HasRow(const SqlConnection& connection, const std::string& sql, int64_t id);
+
 // Undoes everything since its construction unless Release() was called; also works inside a
 // transaction.
 class SqlSavepoint {
  public:
-  SqlSavepoint(const std::string& path, sqlite3* db) : path_(path), db_(db) {
-    RunSql(path_, db_, "SAVEPOINT seapoint");
-  }
-  ~SqlSavepoint() {
-    if (is_released_ || sqlite3_get_autocommit(db_) != 0) return;
-    sqlite3_exec(db_, "ROLLBACK TO seapoint; RELEASE seapoint", nullptr, nullptr, nullptr);
-  }
+  explicit SqlSavepoint(const SqlConnection& connection);
+  ~SqlSavepoint();
   SqlSavepoint(const SqlSavepoint&) = delete;
   SqlSavepoint& operator=(const SqlSavepoint&) = delete;
 
-  void Release() {
-    RunSql(path_, db_, "RELEASE seapoint");
-    is_released_ = true;
-  }
+  void Release();
 
  private:
-  const std::string& path_;
-  sqlite3* db_;
+  const SqlConnection& connection_;
   bool is_released_ = false;
 };
 

@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include "colmap_seapoint/io/cloud/ply.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/colmap/database_features.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "tests/io/test_database.h"
-
 namespace colmap_seapoint {
 namespace {
 
@@ -25,10 +28,10 @@ class ColmapBinary : public testing::Test {
 TEST_F(ColmapBinary, ItsNewDatabaseIsOurs) {
   ASSERT_EQ(RunColmap("database_creator" + Arguments()), 0);
   ColmapDatabase db(dir_ / "a.db", Mode::kReadWrite);
-  const uint32_t camera_id = db.AddCamera(MakeCamera(CameraModel::kOpenCV, 500, 640, 480));
-  const uint32_t image_id = db.AddImage("a.png", camera_id);
-  db.WriteFeatures(image_id, MakeFeatures(10, 1), "p");
-  ExpectSameFeatures(db.ReadFeatures(image_id), MakeFeatures(10, 1));
+  const uint32_t camera_id = AddCamera(&db, MakeCamera(CameraModel::kOpenCV, 500, 640, 480));
+  const uint32_t image_id = AddImage(&db, "a.png", camera_id);
+  WriteFeatures(&db, image_id, MakeFeatures(10, 1), "p");
+  ExpectSameFeatures(ReadFeatures(db, image_id), MakeFeatures(10, 1));
   ExpectSound(dir_ / "a.db");
 }
 
@@ -36,13 +39,13 @@ TEST_F(ColmapBinary, OurDatabaseSurvivesItsTools) {
   std::filesystem::create_directory(dir_ / "images");
   {
     ColmapDatabase db(dir_ / "a.db", Mode::kCreateIfMissing);
-    const uint32_t camera_id = db.AddCamera(MakeCamera(CameraModel::kOpenCV, 120, 100, 80));
+    const uint32_t camera_id = AddCamera(&db, MakeCamera(CameraModel::kOpenCV, 120, 100, 80));
     for (const char* name : {"a.png", "b.png"}) {
       WriteImage(dir_ / (std::string("images/") + name), GrayImage(100, 80, 1, 90));
-      const uint32_t image_id = db.AddImage(name, camera_id);
-      db.WriteFeatures(image_id, MakeFeatures(30, image_id), "p");
+      const uint32_t image_id = AddImage(&db, name, camera_id);
+      WriteFeatures(&db, image_id, MakeFeatures(30, image_id), "p");
     }
-    db.WriteMatches(1, 2, {{1, 2}, {3, 4}}, MakeGeometry({{1, 2}}));
+    WriteMatches(&db, 1, 2, {{1, 2}, {3, 4}}, MakeGeometry({{1, 2}}));
   }
   const auto rows = [&] {
     return Query(dir_ / "a.db", "SELECT * FROM keypoints, two_view_geometries, matches");
@@ -55,16 +58,16 @@ TEST_F(ColmapBinary, OurDatabaseSurvivesItsTools) {
   EXPECT_EQ(rows(), before);
   {
     const ColmapDatabase db(dir_ / "a.db", Mode::kReadWrite);
-    EXPECT_EQ(db.ReadImages().size(), 2u);
-    ExpectSameFeatures(db.ReadFeatures(1), MakeFeatures(30, 1));
-    EXPECT_EQ(db.ReadMatches({1, 2}).size(), 2u);
+    EXPECT_EQ(ReadImages(db).size(), 2u);
+    ExpectSameFeatures(ReadFeatures(db, 1), MakeFeatures(30, 1));
+    EXPECT_EQ(ReadMatches(db, {1, 2}).size(), 2u);
   }
   ExpectSound(dir_ / "a.db");
   EXPECT_EQ(RunColmap("database_cleaner --type all" + Arguments()), 0);
   EXPECT_EQ(QueryOne(dir_ / "a.db", "SELECT count(*) FROM seapoint_descriptors"), "0");
   ColmapDatabase db(dir_ / "a.db", Mode::kReadWrite);
-  EXPECT_TRUE(db.ReadImages().empty());
-  EXPECT_TRUE(db.ReadVerifiedPairs().empty());
+  EXPECT_TRUE(ReadImages(db).empty());
+  EXPECT_TRUE(ReadVerifiedPairs(db).empty());
 }
 
 // SIFT lies where COLMAP keeps its own: its matcher finds what is the same in both pictures.
@@ -73,10 +76,10 @@ TEST_F(ColmapBinary, ItMatchesOurSift) {
   const Features features = MakeFeaturesWithSift(200, 1);
   {
     ColmapDatabase db(dir_ / "a.db", Mode::kCreateIfMissing);
-    const uint32_t camera_id = db.AddCamera(MakeCamera(CameraModel::kOpenCV, 800, 640, 480));
+    const uint32_t camera_id = AddCamera(&db, MakeCamera(CameraModel::kOpenCV, 800, 640, 480));
     for (const char* name : {"a.png", "b.png"}) {
       WriteImage(dir_ / (std::string("images/") + name), GrayImage(640, 480, 1, 90));
-      db.WriteFeatures(db.AddImage(name, camera_id), features, "p");
+      WriteFeatures(&db, AddImage(&db, name, camera_id), features, "p");
     }
   }
   EXPECT_EQ(RunColmap("feature_extractor --SiftExtraction.use_gpu 0 --image_path " +
@@ -85,11 +88,11 @@ TEST_F(ColmapBinary, ItMatchesOurSift) {
   EXPECT_EQ(RunColmap("exhaustive_matcher --SiftMatching.use_gpu 0" + Arguments()), 0);
   {
     const ColmapDatabase db(dir_ / "a.db", Mode::kReadWrite);
-    ExpectSameFeatures(db.ReadFeatures(1), features);
-    const FeatureMatches matches = db.ReadMatches({1, 2});
+    ExpectSameFeatures(ReadFeatures(db, 1), features);
+    const FeatureMatches matches = ReadMatches(db, {1, 2});
     EXPECT_GE(matches.size(), 190u);  // COLMAP's search is approximate
     for (const FeatureMatch& match : matches) EXPECT_EQ(match.idx1, match.idx2);
-    EXPECT_GE(db.ReadTwoViewGeometry({1, 2}).inliers.size(), 190u);
+    EXPECT_GE(ReadTwoViewGeometry(db, {1, 2}).inliers.size(), 190u);
   }
   EXPECT_EQ(RunColmap("database_cleaner --type all" + Arguments()), 0);
   EXPECT_EQ(QueryOne(dir_ / "a.db", "SELECT count(*) FROM seapoint_descriptors"), "0");

@@ -8,12 +8,16 @@
 
 #include <Eigen/LU>
 
+#include "colmap_seapoint/io/colmap/database_features.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
 #include "tests/io/test_database.h"
 
 namespace colmap_seapoint {
 namespace {
 
 using Mode = ColmapDatabase::Mode;
+using Check = ColmapDatabase::Check;
 
 constexpr int kShortTimeoutMs = 50;
 
@@ -23,11 +27,11 @@ class DatabaseTest : public testing::Test {
   DatabaseTest() : path_(dir_ / "database.db"), db_(path_, Mode::kCreateIfMissing) {
     Camera camera = MakeCamera(CameraModel::kOpenCV, 800, 640, 480);
     camera.has_prior_focal_length = true;
-    camera_id_ = db_.AddCamera(camera);
-    a_ = db_.AddImage("dive/a.jpg", camera_id_);
-    b_ = db_.AddImage("dive/b.jpg", camera_id_);
-    db_.WriteFeatures(a_, MakeFeatures(20, 1), "print a");
-    db_.WriteFeatures(b_, MakeFeatures(10, 2), "print b");
+    camera_id_ = AddCamera(&db_, camera);
+    a_ = AddImage(&db_, "dive/a.jpg", camera_id_);
+    b_ = AddImage(&db_, "dive/b.jpg", camera_id_);
+    WriteFeatures(&db_, a_, MakeFeatures(20, 1), "print a");
+    WriteFeatures(&db_, b_, MakeFeatures(10, 2), "print b");
   }
 
   TempDir dir_;
@@ -37,14 +41,14 @@ class DatabaseTest : public testing::Test {
 };
 
 TEST_F(DatabaseTest, CamerasAndImagesRoundTrip) {
-  const auto cameras = db_.ReadCameras();
+  const auto cameras = ReadCameras(db_);
   ASSERT_EQ(cameras.size(), 1u);
   const Camera& camera = cameras.at(camera_id_);
   EXPECT_EQ(camera.model, CameraModel::kOpenCV);
   EXPECT_EQ(camera.width, 640);
   EXPECT_EQ(camera.params, MakeCamera(CameraModel::kOpenCV, 800, 640, 480).params);
   EXPECT_TRUE(camera.has_prior_focal_length);
-  const auto images = db_.ReadImages();
+  const auto images = ReadImages(db_);
   ASSERT_EQ(images.size(), 2u);
   EXPECT_EQ(images[0].name, "dive/a.jpg");
   EXPECT_EQ(images[1].image_id, b_);
@@ -53,28 +57,28 @@ TEST_F(DatabaseTest, CamerasAndImagesRoundTrip) {
 }
 
 TEST_F(DatabaseTest, FeaturesRoundTripBesideAStub) {
-  ExpectSameFeatures(db_.ReadFeatures(a_), MakeFeatures(20, 1));
-  EXPECT_EQ(db_.FeaturesFingerprint(b_), "print b");
-  EXPECT_TRUE(db_.HasFeatures(a_));
-  EXPECT_FALSE(db_.HasFeatures(99));
-  EXPECT_FALSE(db_.FeaturesFingerprint(99));
-  EXPECT_FALSE(db_.ReadFeatures(99));
+  ExpectSameFeatures(ReadFeatures(db_, a_), MakeFeatures(20, 1));
+  EXPECT_EQ(FeaturesFingerprint(db_, b_), "print b");
+  EXPECT_TRUE(HasFeatures(db_, a_));
+  EXPECT_FALSE(HasFeatures(db_, 99));
+  EXPECT_FALSE(FeaturesFingerprint(db_, 99));
+  EXPECT_FALSE(ReadFeatures(db_, 99));
   EXPECT_EQ(Query(path_, "SELECT image_id, rows, cols, data, typeof(data), type FROM descriptors"),
             (std::vector<std::string>{"1|0|128||blob|0", "2|0|128||blob|0"}));
   EXPECT_EQ(QueryOne(path_, "SELECT rows, cols, length(data) FROM keypoints"), "20|4|320");
-  db_.WriteFeatures(a_, Features(), "none");
-  ExpectSameFeatures(db_.ReadFeatures(a_), Features());
+  WriteFeatures(&db_, a_, Features(), "none");
+  ExpectSameFeatures(ReadFeatures(db_, a_), Features());
 }
 
 TEST_F(DatabaseTest, SiftIsStoredAsColmapsOwn) {
   const Features features = MakeFeaturesWithSift(20, 1);
-  db_.WriteFeatures(a_, features, "sift");
-  ExpectSameFeatures(db_.ReadFeatures(a_), features);
-  ExpectSameFeatures(db_.ReadFeatures(b_), MakeFeatures(10, 2));  // without, in the same database
+  WriteFeatures(&db_, a_, features, "sift");
+  ExpectSameFeatures(ReadFeatures(db_, a_), features);
+  ExpectSameFeatures(ReadFeatures(db_, b_), MakeFeatures(10, 2));  // without, in the same database
   EXPECT_EQ(Query(path_, "SELECT rows, cols, length(data), type FROM descriptors"),
             (std::vector<std::string>{"20|128|2560|0", "0|128|0|0"}));
-  db_.WriteFeatures(a_, MakeFeatures(20, 1), "rbrief");
-  ExpectSameFeatures(db_.ReadFeatures(a_), MakeFeatures(20, 1));
+  WriteFeatures(&db_, a_, MakeFeatures(20, 1), "rbrief");
+  ExpectSameFeatures(ReadFeatures(db_, a_), MakeFeatures(20, 1));
   EXPECT_EQ(QueryOne(path_, "SELECT rows, cols, length(data) FROM descriptors"), "0|128|0");
 }
 
@@ -84,44 +88,44 @@ TEST_F(DatabaseTest, DamagedSiftIsAnError) {
                                  "UPDATE descriptors SET rows = 0, data = x''",
                                  "UPDATE descriptors SET cols = 32", "DELETE FROM descriptors"};
   for (const std::string& damage : damages) {
-    db_.WriteFeatures(a_, MakeFeaturesWithSift(20, 1), "sift");
-    ASSERT_TRUE(db_.ReadFeatures(a_));
+    WriteFeatures(&db_, a_, MakeFeaturesWithSift(20, 1), "sift");
+    ASSERT_TRUE(ReadFeatures(db_, a_));
     Execute(path_, damage + " WHERE image_id = 1");
-    EXPECT_ERROR(db_.ReadFeatures(a_), "the SIFT descriptors of image 1 are damaged");
+    EXPECT_ERROR(ReadFeatures(db_, a_), "the SIFT descriptors of image 1 are damaged");
   }
 }
 
 // A database of the time before SIFT is read, and taken further.
 TEST_F(DatabaseTest, OurTableGrows) {
   Execute(path_, "ALTER TABLE seapoint_descriptors DROP COLUMN sift_hash");
-  ExpectSameFeatures(db_.ReadFeatures(a_), MakeFeatures(20, 1));
-  db_.WriteFeatures(b_, MakeFeaturesWithSift(7, 5), "sift");
-  ExpectSameFeatures(db_.ReadFeatures(a_), MakeFeatures(20, 1));
-  ExpectSameFeatures(db_.ReadFeatures(b_), MakeFeaturesWithSift(7, 5));
+  ExpectSameFeatures(ReadFeatures(db_, a_), MakeFeatures(20, 1));
+  WriteFeatures(&db_, b_, MakeFeaturesWithSift(7, 5), "sift");
+  ExpectSameFeatures(ReadFeatures(db_, a_), MakeFeatures(20, 1));
+  ExpectSameFeatures(ReadFeatures(db_, b_), MakeFeaturesWithSift(7, 5));
 }
 
 TEST_F(DatabaseTest, ForeignKeypointsAreNotOurs) {
   Execute(path_, "UPDATE keypoints SET data = zeroblob(320) WHERE image_id = 1");
-  EXPECT_FALSE(db_.ReadFeatures(a_));
+  EXPECT_FALSE(ReadFeatures(db_, a_));
   Execute(path_, "UPDATE keypoints SET rows = 5, data = zeroblob(80) WHERE image_id = 2");
-  EXPECT_FALSE(db_.ReadFeatures(b_));
+  EXPECT_FALSE(ReadFeatures(db_, b_));
 }
 
 TEST_F(DatabaseTest, DamagedDescriptorsAreAnError) {
   Execute(path_, "UPDATE seapoint_descriptors SET data = zeroblob(640) WHERE image_id = 1");
-  EXPECT_ERROR(db_.ReadFeatures(a_), "descriptors of image 1 are damaged");
+  EXPECT_ERROR(ReadFeatures(db_, a_), "descriptors of image 1 are damaged");
   Execute(path_, "UPDATE seapoint_descriptors SET rows = 1000000000000 WHERE image_id = 2");
-  EXPECT_ERROR(db_.ReadFeatures(b_), "descriptors of image 2 are damaged");
+  EXPECT_ERROR(ReadFeatures(db_, b_), "descriptors of image 2 are damaged");
 }
 
 TEST_F(DatabaseTest, MatchesRoundTrip) {
   const FeatureMatches raw = {{0, 1}, {19, 9}, {3, 4}};
   const TwoViewGeometry geometry = MakeGeometry({{19, 9}, {3, 4}});
-  EXPECT_FALSE(db_.HasMatches({a_, b_}));
-  db_.WriteMatches(a_, b_, raw, geometry);
-  EXPECT_TRUE(db_.HasMatches({a_, b_}));
-  EXPECT_EQ(db_.ReadMatches({a_, b_}), raw);
-  const TwoViewGeometry read = db_.ReadTwoViewGeometry({a_, b_});
+  EXPECT_FALSE(HasMatches(db_, {a_, b_}));
+  WriteMatches(&db_, a_, b_, raw, geometry);
+  EXPECT_TRUE(HasMatches(db_, {a_, b_}));
+  EXPECT_EQ(ReadMatches(db_, {a_, b_}), raw);
+  const TwoViewGeometry read = ReadTwoViewGeometry(db_, {a_, b_});
   EXPECT_EQ(read.config, TwoViewConfig::kCalibrated);
   EXPECT_EQ(read.inliers, geometry.inliers);
   EXPECT_EQ(*read.F, *geometry.F);
@@ -130,7 +134,7 @@ TEST_F(DatabaseTest, MatchesRoundTrip) {
   EXPECT_EQ(read.cam2_from_cam1->translation, geometry.cam2_from_cam1->translation);
   EXPECT_LT(read.cam2_from_cam1->rotation.angularDistance(geometry.cam2_from_cam1->rotation),
             1e-15);
-  EXPECT_EQ(db_.ReadVerifiedPairs(), (std::vector<ImagePair>{{a_, b_}}));
+  EXPECT_EQ(ReadVerifiedPairs(db_), (std::vector<ImagePair>{{a_, b_}}));
   // Row-major: the second number is F(0, 1) = 2.
   EXPECT_EQ(QueryOne(path_, "SELECT hex(substr(F, 9, 8)) FROM two_view_geometries"),
             "0000000000000040");
@@ -139,9 +143,9 @@ TEST_F(DatabaseTest, MatchesRoundTrip) {
 
 TEST_F(DatabaseTest, SwappedPairsAreTurnedAround) {
   const TwoViewGeometry geometry = MakeGeometry({{9, 19}});
-  db_.WriteMatches(b_, a_, {{9, 19}}, geometry);
-  EXPECT_EQ(db_.ReadMatches({a_, b_}), (FeatureMatches{{19, 9}}));
-  const TwoViewGeometry read = db_.ReadTwoViewGeometry({a_, b_});
+  WriteMatches(&db_, b_, a_, {{9, 19}}, geometry);
+  EXPECT_EQ(ReadMatches(db_, {a_, b_}), (FeatureMatches{{19, 9}}));
+  const TwoViewGeometry read = ReadTwoViewGeometry(db_, {a_, b_});
   EXPECT_EQ(read.inliers, (FeatureMatches{{19, 9}}));
   EXPECT_EQ(*read.F, geometry.F->transpose());
   EXPECT_EQ(*read.E, geometry.E->transpose());
@@ -154,99 +158,104 @@ TEST_F(DatabaseTest, SwappedPairsAreTurnedAround) {
 TEST_F(DatabaseTest, UnsetMatricesAreNull) {
   TwoViewGeometry geometry;
   geometry.config = TwoViewConfig::kDegenerate;
-  db_.WriteMatches(a_, b_, {}, geometry);
+  WriteMatches(&db_, a_, b_, {}, geometry);
   EXPECT_EQ(QueryOne(path_,
                      "SELECT rows, cols, typeof(data), config, F, E, H, qvec, tvec "
                      "FROM two_view_geometries"),
             "0|2|blob|1|NULL|NULL|NULL|NULL|NULL");
-  const TwoViewGeometry read = db_.ReadTwoViewGeometry({a_, b_});
+  const TwoViewGeometry read = ReadTwoViewGeometry(db_, {a_, b_});
   EXPECT_EQ(read.config, TwoViewConfig::kDegenerate);
   EXPECT_FALSE(read.F || read.E || read.H || read.cam2_from_cam1);
-  EXPECT_TRUE(db_.ReadVerifiedPairs().empty());
-  EXPECT_TRUE(db_.HasMatches({a_, b_}));
+  EXPECT_TRUE(ReadVerifiedPairs(db_).empty());
+  EXPECT_TRUE(HasMatches(db_, {a_, b_}));
   // What COLMAP 3.8 writes for "not computed".
   Execute(path_, "UPDATE two_view_geometries SET F = x'', E = zeroblob(72), qvec = zeroblob(32)");
-  const TwoViewGeometry zeros = db_.ReadTwoViewGeometry({a_, b_});
+  const TwoViewGeometry zeros = ReadTwoViewGeometry(db_, {a_, b_});
   EXPECT_FALSE(zeros.F || zeros.E || zeros.cam2_from_cam1);
 }
 
 TEST_F(DatabaseTest, HostileMatches) {
-  db_.WriteMatches(a_, b_, {{0, 1}}, MakeGeometry({{0, 1}}));
+  WriteMatches(&db_, a_, b_, {{0, 1}}, MakeGeometry({{0, 1}}));
   Execute(path_, "UPDATE matches SET data = x'1400000000000000'");  // 20: one too many
-  EXPECT_ERROR(db_.ReadMatches({a_, b_}), "name keypoints 20 and 0");
+  EXPECT_ERROR(ReadMatches(db_, {a_, b_}), "name keypoints 20 and 0");
   Execute(path_, "UPDATE matches SET rows = 2");
-  EXPECT_ERROR(db_.ReadMatches({a_, b_}), "are damaged: 8 bytes for 2 rows");
+  EXPECT_ERROR(ReadMatches(db_, {a_, b_}), "are damaged: 8 bytes for 2 rows");
   Execute(path_, "UPDATE matches SET rows = 4611686018427387905");
-  EXPECT_ERROR(db_.ReadMatches({a_, b_}), "are damaged");
+  EXPECT_ERROR(ReadMatches(db_, {a_, b_}), "are damaged");
   Execute(path_, "UPDATE two_view_geometries SET F = x'00'");
-  EXPECT_ERROR(db_.ReadTwoViewGeometry({a_, b_}), "damaged matrix");
+  EXPECT_ERROR(ReadTwoViewGeometry(db_, {a_, b_}), "damaged matrix");
   Execute(path_, "UPDATE two_view_geometries SET rows = -1");
-  EXPECT_ERROR(db_.ReadTwoViewGeometry({a_, b_}), "are damaged");
+  EXPECT_ERROR(ReadTwoViewGeometry(db_, {a_, b_}), "are damaged");
 }
 
 TEST_F(DatabaseTest, NewFeaturesDropTheImagesMatches) {
-  const uint32_t c = db_.AddImage("c.jpg", camera_id_);
-  db_.WriteFeatures(c, MakeFeatures(5, 3), "print c");
-  db_.WriteMatches(a_, b_, {{0, 0}}, MakeGeometry({{0, 0}}));
-  db_.WriteMatches(b_, c, {{0, 0}}, MakeGeometry({{0, 0}}));
-  db_.WriteMatches(a_, c, {{0, 0}}, MakeGeometry({{0, 0}}));
-  db_.WriteFeatures(b_, MakeFeatures(11, 4), "changed");
-  EXPECT_EQ(db_.ReadVerifiedPairs(), (std::vector<ImagePair>{{a_, c}}));
+  const uint32_t c = AddImage(&db_, "c.jpg", camera_id_);
+  WriteFeatures(&db_, c, MakeFeatures(5, 3), "print c");
+  WriteMatches(&db_, a_, b_, {{0, 0}}, MakeGeometry({{0, 0}}));
+  WriteMatches(&db_, b_, c, {{0, 0}}, MakeGeometry({{0, 0}}));
+  WriteMatches(&db_, a_, c, {{0, 0}}, MakeGeometry({{0, 0}}));
+  WriteFeatures(&db_, b_, MakeFeatures(11, 4), "changed");
+  EXPECT_EQ(ReadVerifiedPairs(db_), (std::vector<ImagePair>{{a_, c}}));
   EXPECT_EQ(Query(path_, "SELECT pair_id FROM matches").size(), 1u);
-  ExpectSameFeatures(db_.ReadFeatures(b_), MakeFeatures(11, 4));
+  ExpectSameFeatures(ReadFeatures(db_, b_), MakeFeatures(11, 4));
 }
 
 TEST_F(DatabaseTest, DeletedImagesCascade) {
   Execute(path_, "PRAGMA foreign_keys = ON; DELETE FROM images WHERE image_id = 1");
   EXPECT_EQ(QueryOne(path_, "SELECT count(*) FROM seapoint_descriptors"), "1");
-  EXPECT_FALSE(db_.ReadFeatures(a_));
+  EXPECT_FALSE(ReadFeatures(db_, a_));
 }
 
 TEST_F(DatabaseTest, HostileImagesAndCameras) {
-  EXPECT_ERROR(db_.AddImage("../x.jpg", camera_id_), "no legal image name");
-  EXPECT_ERROR(db_.AddImage("dive/a.jpg", camera_id_), "UNIQUE");
-  EXPECT_ERROR(db_.AddImage("new.jpg", 77), "FOREIGN KEY");
-  EXPECT_EQ(db_.ReadImages().size(), 2u);
+  EXPECT_ERROR(AddImage(&db_, "../x.jpg", camera_id_), "no legal image name");
+  EXPECT_ERROR(AddImage(&db_, "dive/a.jpg", camera_id_), "UNIQUE");
+  EXPECT_ERROR(AddImage(&db_, "new.jpg", 77), "FOREIGN KEY");
+  EXPECT_EQ(ReadImages(db_).size(), 2u);
   Execute(path_, "UPDATE images SET name = '../../outside/x.jpg' WHERE image_id = 1");
-  EXPECT_ERROR(db_.ReadImages(), "leads out of the image folder");
+  EXPECT_ERROR(ReadImages(db_), "leads out of the image folder");
   Execute(path_, "UPDATE cameras SET params = zeroblob(9)");
-  EXPECT_ERROR(db_.ReadCameras(), "camera 1 has damaged parameters");
+  EXPECT_ERROR(ReadCameras(db_), "camera 1 has damaged parameters");
   Execute(path_, "UPDATE cameras SET width = -1");
-  EXPECT_ERROR(db_.ReadCameras(), "impossible size");
+  EXPECT_ERROR(ReadCameras(db_), "impossible size");
   Execute(path_, "UPDATE cameras SET model = 18");
-  EXPECT_ERROR(db_.ReadCameras(), "unknown camera model 18");
+  EXPECT_ERROR(ReadCameras(db_), "unknown camera model 18");
 }
 
 TEST_F(DatabaseTest, TransactionsLandTogetherOrNotAtAll) {
-  db_.BeginTransaction();
-  db_.AddImage("c.jpg", camera_id_);
-  db_.WriteFeatures(a_, MakeFeatures(3, 9), "inside");
-  db_.RollbackTransaction();
-  EXPECT_EQ(db_.ReadImages().size(), 2u);
-  EXPECT_EQ(db_.FeaturesFingerprint(a_), "print a");
-  db_.BeginTransaction();
-  db_.AddImage("c.jpg", camera_id_);
-  db_.CommitTransaction();
-  EXPECT_EQ(ColmapDatabase(path_, Mode::kReadOnly).ReadImages().size(), 3u);
+  {
+    const DatabaseTransaction abandoned(&db_);
+    AddImage(&db_, "c.jpg", camera_id_);
+    WriteFeatures(&db_, a_, MakeFeatures(3, 9), "inside");
+  }
+  EXPECT_EQ(ReadImages(db_).size(), 2u);
+  EXPECT_EQ(FeaturesFingerprint(db_, a_), "print a");
+  DatabaseTransaction transaction(&db_);
+  AddImage(&db_, "c.jpg", camera_id_);
+  EXPECT_EQ(ReadImages(ColmapDatabase(path_, Mode::kReadOnly)).size(), 2u);
+  transaction.Commit();
+  EXPECT_EQ(ReadImages(ColmapDatabase(path_, Mode::kReadOnly)).size(), 3u);
 }
 
 TEST_F(DatabaseTest, LockedByAnotherProgram) {
-  db_.BeginTransaction();
-  EXPECT_ERROR(ColmapDatabase(path_, Mode::kReadWrite, kShortTimeoutMs), "is locked by another");
-  EXPECT_EQ(ColmapDatabase(path_, Mode::kReadOnly, kShortTimeoutMs).ReadImages().size(), 2u);
-  db_.CommitTransaction();
+  DatabaseTransaction transaction(&db_);
+  EXPECT_ERROR(ColmapDatabase(path_, Mode::kReadWrite, Check::kWhole, kShortTimeoutMs),
+               "is locked by another");
+  EXPECT_EQ(
+      ReadImages(ColmapDatabase(path_, Mode::kReadOnly, Check::kWhole, kShortTimeoutMs)).size(),
+      2u);
+  transaction.Commit();
 }
 
 TEST_F(DatabaseTest, ReadOnlyWritesNothing) {
   ColmapDatabase reader(path_, Mode::kReadOnly);
-  EXPECT_ERROR(reader.AddImage("c.jpg", camera_id_), "cannot be written");
+  EXPECT_ERROR(AddImage(&reader, "c.jpg", camera_id_), "cannot be written");
 }
 
 TEST_F(DatabaseTest, MovesAndReopens) {
   ColmapDatabase moved(std::move(db_));
-  EXPECT_EQ(moved.ReadImages().size(), 2u);
+  EXPECT_EQ(ReadImages(moved).size(), 2u);
   ColmapDatabase again(path_, Mode::kCreateIfMissing);
-  EXPECT_EQ(again.ReadImages().size(), 2u);
+  EXPECT_EQ(ReadImages(again).size(), 2u);
 }
 
 TEST(ColmapDatabase, SchemaIsThatOfColmap38) {
@@ -285,10 +294,10 @@ TEST(ColmapDatabase, TruncatedAndDamagedFiles) {
   const TempDir dir;
   {
     ColmapDatabase db(dir / "a.db", Mode::kCreateIfMissing);
-    const uint32_t camera_id = db.AddCamera(MakeCamera(CameraModel::kPinhole, 500, 640, 480));
+    const uint32_t camera_id = AddCamera(&db, MakeCamera(CameraModel::kPinhole, 500, 640, 480));
     for (int i = 0; i < 20; ++i) {
-      const uint32_t image_id = db.AddImage(std::to_string(i) + ".jpg", camera_id);
-      db.WriteFeatures(image_id, MakeFeatures(300, 5), "p");
+      const uint32_t image_id = AddImage(&db, std::to_string(i) + ".jpg", camera_id);
+      WriteFeatures(&db, image_id, MakeFeatures(300, 5), "p");
     }
   }
   const std::string whole = ReadBytes(dir / "a.db");
@@ -300,6 +309,8 @@ TEST(ColmapDatabase, TruncatedAndDamagedFiles) {
   std::fill_n(damaged.begin() + 4096, 4096, '\x5a');
   WriteBytes(dir / "damaged.db", damaged);
   EXPECT_ERROR(ColmapDatabase(dir / "damaged.db", Mode::kReadOnly), "is damaged");
+  const ColmapDatabase unchecked(dir / "damaged.db", Mode::kReadOnly, Check::kNone);
+  EXPECT_ERROR(unchecked.CheckWhole(), "is damaged");
 }
 
 TEST(ColmapDatabase, KilledAtAnyMomentItResumes) {
@@ -308,15 +319,15 @@ TEST(ColmapDatabase, KilledAtAnyMomentItResumes) {
     const pid_t child = fork();
     if (child == 0) {
       ColmapDatabase db(dir / "a.db", Mode::kCreateIfMissing);
-      const auto cameras = db.ReadCameras();
+      const auto cameras = ReadCameras(db);
       const uint32_t camera_id =
-          cameras.empty() ? db.AddCamera(MakeCamera(CameraModel::kPinhole, 500, 640, 480))
+          cameras.empty() ? AddCamera(&db, MakeCamera(CameraModel::kPinhole, 500, 640, 480))
                           : cameras.begin()->first;
-      for (int i = static_cast<int>(db.ReadImages().size());; ++i) {
-        db.BeginTransaction();
-        const uint32_t image_id = db.AddImage(std::to_string(i) + ".jpg", camera_id);
-        db.WriteFeatures(image_id, MakeFeatures(200, static_cast<unsigned>(i)), "p");
-        db.CommitTransaction();
+      for (int i = static_cast<int>(ReadImages(db).size());; ++i) {
+        DatabaseTransaction transaction(&db);
+        const uint32_t image_id = AddImage(&db, std::to_string(i) + ".jpg", camera_id);
+        WriteFeatures(&db, image_id, MakeFeatures(200, static_cast<unsigned>(i)), "p");
+        transaction.Commit();
       }
     }
     usleep(static_cast<useconds_t>(20000 + 17000 * round));
@@ -326,10 +337,10 @@ TEST(ColmapDatabase, KilledAtAnyMomentItResumes) {
     ASSERT_TRUE(WIFSIGNALED(status)) << "the child failed by itself";
   }
   const ColmapDatabase db(dir / "a.db", Mode::kReadWrite);
-  const auto images = db.ReadImages();
+  const auto images = ReadImages(db);
   EXPECT_GT(images.size(), 0u);
   for (size_t i = 0; i < images.size(); ++i) {
-    ExpectSameFeatures(db.ReadFeatures(images[i].image_id),
+    ExpectSameFeatures(ReadFeatures(db, images[i].image_id),
                        MakeFeatures(200, static_cast<unsigned>(i)));
   }
   ExpectSound(dir / "a.db");
@@ -342,15 +353,15 @@ TEST(ColmapDatabase, FullDiskIsAnErrorAndNothingIsLost) {
   }
   {
     ColmapDatabase db(dir / "a.db", Mode::kCreateIfMissing);
-    const uint32_t camera_id = db.AddCamera(MakeCamera(CameraModel::kPinhole, 500, 640, 480));
+    const uint32_t camera_id = AddCamera(&db, MakeCamera(CameraModel::kPinhole, 500, 640, 480));
     const std::string error = ErrorOf([&] {
       for (int i = 0; i < 1000; ++i) {
-        const uint32_t image_id = db.AddImage(std::to_string(i) + ".jpg", camera_id);
-        db.WriteFeatures(image_id, MakeFeatures(300, 1), "p");
+        const uint32_t image_id = AddImage(&db, std::to_string(i) + ".jpg", camera_id);
+        WriteFeatures(&db, image_id, MakeFeatures(300, 1), "p");
       }
     });
     EXPECT_NE(error.find("disk"), std::string::npos) << error;
-    ExpectSameFeatures(db.ReadFeatures(1), MakeFeatures(300, 1));
+    ExpectSameFeatures(ReadFeatures(db, 1), MakeFeatures(300, 1));
   }
   ExpectSound(dir / "a.db");
   umount(dir.Path().c_str());

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <map>
 
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_features.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
 #include "tests/io/test_database.h"
-
 namespace colmap_seapoint {
 namespace {
 
@@ -24,19 +27,20 @@ std::map<std::string, std::vector<std::string>> AllRows(const std::filesystem::p
 
 void AddImageWithMatches(const std::filesystem::path& path) {
   ColmapDatabase db(path, Mode::kReadWrite);
-  const auto before = db.ReadImages();
-  const uint32_t camera_id = db.AddCamera(MakeCamera(CameraModel::kOpenCV, 700, 640, 480));
-  const uint32_t c = db.AddImage("new/c.jpg", camera_id);
-  const uint32_t d = db.AddImage("new/d.jpg", camera_id);
-  const uint32_t e = db.AddImage("new/e.jpg", before.front().camera_id);
+  const auto before = ReadImages(db);
+  const uint32_t camera_id = AddCamera(&db, MakeCamera(CameraModel::kOpenCV, 700, 640, 480));
+  const uint32_t c = AddImage(&db, "new/c.jpg", camera_id);
+  const uint32_t d = AddImage(&db, "new/d.jpg", camera_id);
+  const uint32_t e = AddImage(&db, "new/e.jpg", before.front().camera_id);
   for (const uint32_t image_id : {c, d, e}) {
-    db.WriteFeatures(image_id, MakeFeatures(30, image_id), "print");
+    WriteFeatures(&db, image_id, MakeFeatures(30, image_id), "print");
   }
-  db.WriteMatches(d, c, {{1, 2}}, MakeGeometry({{1, 2}}));
-  db.WriteMatches(c, before.front().image_id, {{1, 0}}, MakeGeometry({{1, 0}}));
-  ExpectSameFeatures(db.ReadFeatures(c), MakeFeatures(30, c));
-  EXPECT_EQ(db.ReadMatches({c, d}), (FeatureMatches{{2, 1}}));
-  EXPECT_EQ(db.ReadTwoViewGeometry({before.front().image_id, c}).inliers, (FeatureMatches{{0, 1}}));
+  WriteMatches(&db, d, c, {{1, 2}}, MakeGeometry({{1, 2}}));
+  WriteMatches(&db, c, before.front().image_id, {{1, 0}}, MakeGeometry({{1, 0}}));
+  ExpectSameFeatures(ReadFeatures(db, c), MakeFeatures(30, c));
+  EXPECT_EQ(ReadMatches(db, {c, d}), (FeatureMatches{{2, 1}}));
+  EXPECT_EQ(ReadTwoViewGeometry(db, {before.front().image_id, c}).inliers,
+            (FeatureMatches{{0, 1}}));
 }
 
 void ExpectOnlyAdded(const std::filesystem::path& path) {
@@ -66,14 +70,14 @@ TEST(ColmapFormats, EveryDatabaseIsReadAndOnlyAddedTo) {
     std::filesystem::permissions(path, std::filesystem::perms::owner_all);
     {
       const ColmapDatabase db(path, Mode::kReadOnly);
-      EXPECT_EQ(db.ReadCameras().size(), 1u) << path;
-      EXPECT_EQ(db.ReadImages().size(), 12u) << path;
-      EXPECT_FALSE(db.ReadFeatures(1)) << "they are not ours";
-      const auto pairs = db.ReadVerifiedPairs();
+      EXPECT_EQ(ReadCameras(db).size(), 1u) << path;
+      EXPECT_EQ(ReadImages(db).size(), 12u) << path;
+      EXPECT_FALSE(ReadFeatures(db, 1)) << "they are not ours";
+      const auto pairs = ReadVerifiedPairs(db);
       EXPECT_FALSE(pairs.empty());
       for (const ImagePair& pair : pairs) {
-        EXPECT_GT(db.ReadTwoViewGeometry(pair).inliers.size(), 0u);
-        EXPECT_GT(db.ReadMatches(pair).size(), 0u);
+        EXPECT_GT(ReadTwoViewGeometry(db, pair).inliers.size(), 0u);
+        EXPECT_GT(ReadMatches(db, pair).size(), 0u);
       }
     }
     ExpectOnlyAdded(path);
@@ -91,7 +95,7 @@ TEST(ColmapFormats, OpensInAFolderThatCannotBeWritten) {
   std::filesystem::permissions(folder / "a.db", std::filesystem::perms::owner_read);
   std::filesystem::permissions(
       folder, std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
-  EXPECT_TRUE(ColmapDatabase(folder / "a.db", Mode::kReadOnly).ReadImages().empty());
+  EXPECT_TRUE(ReadImages(ColmapDatabase(folder / "a.db", Mode::kReadOnly)).empty());
   std::filesystem::permissions(folder, std::filesystem::perms::owner_all);
 }
 
@@ -99,9 +103,9 @@ TEST(ColmapFormats, OpensInAFolderThatCannotBeWritten) {
 void MakeDatabaseWithFrames(const std::filesystem::path& path) {
   {
     ColmapDatabase db(path, Mode::kCreateIfMissing);
-    const uint32_t camera_id = db.AddCamera(MakeCamera(CameraModel::kPinhole, 500, 640, 480));
-    const uint32_t image_id = db.AddImage("a.jpg", camera_id);
-    db.WriteFeatures(image_id, MakeFeatures(5, 1), "print");
+    const uint32_t camera_id = AddCamera(&db, MakeCamera(CameraModel::kPinhole, 500, 640, 480));
+    const uint32_t image_id = AddImage(&db, "a.jpg", camera_id);
+    WriteFeatures(&db, image_id, MakeFeatures(5, 1), "print");
   }
   Execute(path,
           "CREATE TABLE rigs(rig_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, "
@@ -119,7 +123,10 @@ TEST(ColmapFormats, FramesAreAllOrNothing) {
   const auto path = dir / "a.db";
   MakeDatabaseWithFrames(path);
   // No frames: newer COLMAPs make them by themselves.
-  ColmapDatabase(path, Mode::kReadWrite).AddImage("b.jpg", 1);
+  {
+    ColmapDatabase db(path, Mode::kReadWrite);
+    AddImage(&db, "b.jpg", 1);
+  }
   EXPECT_EQ(QueryOne(path, "SELECT (SELECT count(*) FROM rigs) + (SELECT count(*) FROM frames)"),
             "0");
   Execute(path,
@@ -127,10 +134,10 @@ TEST(ColmapFormats, FramesAreAllOrNothing) {
           "INSERT INTO frame_data VALUES(8, 1, 1, 0), (9, 2, 1, 0)");
   {
     ColmapDatabase db(path, Mode::kReadWrite);
-    db.AddImage("c.jpg", 1);
-    const uint32_t camera_id = db.AddCamera(MakeCamera(CameraModel::kPinhole, 500, 640, 480));
-    db.AddImage("d.jpg", camera_id);
-    db.AddImage("e.jpg", camera_id);
+    AddImage(&db, "c.jpg", 1);
+    const uint32_t camera_id = AddCamera(&db, MakeCamera(CameraModel::kPinhole, 500, 640, 480));
+    AddImage(&db, "d.jpg", camera_id);
+    AddImage(&db, "e.jpg", camera_id);
   }
   EXPECT_EQ(Query(path, "SELECT * FROM rigs"), (std::vector<std::string>{"5|1|0", "6|2|0"}));
   EXPECT_EQ(Query(path, "SELECT * FROM frames"),

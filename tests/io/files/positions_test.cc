@@ -3,9 +3,11 @@
 #include <cstring>
 #include <limits>
 
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
+#include "colmap_seapoint/io/colmap/database_priors.h"
 #include "colmap_seapoint/io/files/positions_csv.h"
 #include "tests/io/test_database.h"
-
 namespace colmap_seapoint {
 namespace {
 
@@ -86,11 +88,11 @@ class PositionPriors : public testing::Test {
  protected:
   PositionPriors() : path_(dir_ / "database.db") {
     ColmapDatabase database(path_, Mode::kCreateIfMissing);
-    const uint32_t camera = database.AddCamera(MakeCamera(CameraModel::kPinhole, 500, 640, 480));
-    for (const char* name : {"a.jpg", "b.jpg", "c.jpg"}) database.AddImage(name, camera);
+    const uint32_t camera = AddCamera(&database, MakeCamera(CameraModel::kPinhole, 500, 640, 480));
+    for (const char* name : {"a.jpg", "b.jpg", "c.jpg"}) AddImage(&database, name, camera);
   }
   std::vector<PositionPrior> Read() const {
-    return ColmapDatabase(path_, Mode::kReadOnly).ReadPositionPriors();
+    return ReadPositionPriors(ColmapDatabase(path_, Mode::kReadOnly));
   }
 
   TempDir dir_;

@@ -1,9 +1,11 @@
+#include "colmap_seapoint/io/colmap/database_matches.h"
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cstring>
+#include <string>
 
 #include "colmap_seapoint/base/error.h"
-#include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/files/sqlite.h"
 
 namespace colmap_seapoint {
@@ -12,7 +14,6 @@ namespace {
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "COLMAP's blobs are little-endian");
 static_assert(sizeof(FeatureMatch) == 2 * sizeof(uint32_t), "a match row is a FeatureMatch");
 
-constexpr int64_t kMaxImageId = 2147483647;
 constexpr const char* kRemedy =
     "restore a copy of the database, or delete the matches (colmap database_cleaner) and match "
     "again";
@@ -46,18 +47,18 @@ void BindMatches(const FeatureMatches& matches, SqlStatement* statement) {
 // Columns `column`, +1, +2 hold rows, cols, data.
 FeatureMatches TakeMatches(const std::string& path, const std::string& who, const SqlStatement& row,
                            int column) {
-  const int64_t num_rows = row.Int(column);
-  const size_t bytes = row.BlobSize(column + 2);
+  const int64_t num_rows = row[column].Int();
+  const size_t bytes = row[column + 2].Size();
   if (num_rows < 0 || bytes % sizeof(FeatureMatch) != 0 ||
       bytes / sizeof(FeatureMatch) != static_cast<uint64_t>(num_rows) ||
-      (num_rows > 0 && row.Int(column + 1) != 2)) {
+      (num_rows > 0 && row[column + 1].Int() != 2)) {
     throw Error(path,
                 who + " are damaged: " + std::to_string(bytes) + " bytes for " +
                     std::to_string(num_rows) + " rows",
                 kRemedy);
   }
   FeatureMatches matches(static_cast<size_t>(num_rows));
-  if (num_rows > 0) std::memcpy(matches.data(), row.Blob(column + 2), bytes);
+  if (num_rows > 0) std::memcpy(matches.data(), row[column + 2].Blob(), bytes);
   return matches;
 }
 
@@ -65,12 +66,12 @@ FeatureMatches TakeMatches(const std::string& path, const std::string& who, cons
 template <typename Matrix>
 std::optional<Matrix> TakeMatrix(const std::string& path, const std::string& who,
                                  const SqlStatement& row, int column) {
-  if (row.IsNull(column) || row.BlobSize(column) == 0) return std::nullopt;
+  if (row[column].IsNull() || row[column].Size() == 0) return std::nullopt;
   Matrix matrix;
-  if (row.BlobSize(column) != sizeof(double) * static_cast<size_t>(matrix.size())) {
+  if (row[column].Size() != sizeof(double) * static_cast<size_t>(matrix.size())) {
     throw Error(path, who + " has a damaged matrix or pose", kRemedy);
   }
-  std::memcpy(matrix.data(), row.Blob(column), row.BlobSize(column));
+  std::memcpy(matrix.data(), row[column].Blob(), row[column].Size());
   if (!matrix.allFinite()) throw Error(path, who + " is not finite", kRemedy);
   if (matrix.isZero(0)) return std::nullopt;
   return matrix;
@@ -80,33 +81,21 @@ std::string PairText(ImagePair pair) {
   return "images " + std::to_string(pair.first) + " and " + std::to_string(pair.second);
 }
 
-}  // namespace
-
-bool ColmapDatabase::HasMatches(ImagePair pair) const {
-  return HasRow(
-      "SELECT 1 FROM two_view_geometries WHERE pair_id = ? AND (rows <> 0 OR config <> 0)",
-      PairId(pair));
+void WriteRaw(const SqlConnection& db, int64_t pair_id, const FeatureMatches& matches) {
+  SqlStatement row(db,
+                   "INSERT OR REPLACE INTO matches(pair_id, rows, cols, data) "
+                   "VALUES(?, ?, ?, ?)");
+  row.Bind(pair_id);
+  BindMatches(matches, &row);
+  row.Run();
 }
 
-void ColmapDatabase::WriteMatches(uint32_t image_id1, uint32_t image_id2, const FeatureMatches& raw,
-                                  const TwoViewGeometry& geometry) {
-  if (image_id1 > image_id2) {
-    return WriteMatches(image_id2, image_id1, SwapColumns(raw), Swap(geometry));
-  }
-  const int64_t pair_id = PairId({image_id1, image_id2});
-  SqlSavepoint savepoint(path_, db_);
-  SqlStatement matches(path_, db_,
-                       "INSERT OR REPLACE INTO matches(pair_id, rows, cols, data) "
-                       "VALUES(?, ?, ?, ?)");
-  matches.Bind(pair_id);
-  BindMatches(raw, &matches);
-  matches.Run();
-
-  SqlStatement row(path_, db_,
-                   std::string("INSERT OR REPLACE INTO two_view_geometries(pair_id, rows, cols, "
-                               "data, config, F, E, H") +
-                       (extras_.has_poses ? ", qvec, tvec) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"
-                                          : ") VALUES(?, ?, ?, ?, ?, ?, ?, ?)"));
+void WriteGeometry(const SqlConnection& db, bool has_poses, int64_t pair_id,
+                   const TwoViewGeometry& geometry) {
+  SqlStatement row(db, std::string("INSERT OR REPLACE INTO two_view_geometries(pair_id, rows, "
+                                   "cols, data, config, F, E, H") +
+                           (has_poses ? ", qvec, tvec) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"
+                                      : ") VALUES(?, ?, ?, ?, ?, ?, ?, ?)"));
   row.Bind(pair_id);
   BindMatches(geometry.inliers, &row);
   row.Bind(static_cast<int64_t>(geometry.config));
@@ -122,30 +111,41 @@ void ColmapDatabase::WriteMatches(uint32_t image_id1, uint32_t image_id2, const 
   }
   Eigen::Vector4d qvec;
   Eigen::Vector3d tvec;
-  if (extras_.has_poses && geometry.cam2_from_cam1) {
+  if (has_poses && geometry.cam2_from_cam1) {
     const Eigen::Quaterniond& q = geometry.cam2_from_cam1->rotation;
     qvec << q.w(), q.x(), q.y(), q.z();
     tvec = geometry.cam2_from_cam1->translation;
     row.BindBlob(qvec.data(), sizeof(double) * 4).BindBlob(tvec.data(), sizeof(double) * 3);
-  } else if (extras_.has_poses) {
+  } else if (has_poses) {
     row.BindNull().BindNull();
   }
   row.Run();
-  savepoint.Release();
 }
 
-void ColmapDatabase::CheckIndices(ImagePair pair, const FeatureMatches& matches,
-                                  const char* table) const {
+// Columns 7 and 8 of `row`: qvec and tvec.
+std::optional<Rigid3d> TakePose(const std::string& path, const std::string& who,
+                                const SqlStatement& row) {
+  const auto qvec = TakeMatrix<Eigen::Vector4d>(path, who, row, 7);
+  const auto tvec = TakeMatrix<Eigen::Vector3d>(path, who, row, 8);
+  if (!qvec) return std::nullopt;
+  Rigid3d pose;
+  pose.rotation = Eigen::Quaterniond((*qvec)[0], (*qvec)[1], (*qvec)[2], (*qvec)[3]).normalized();
+  pose.translation = tvec.value_or(Eigen::Vector3d::Zero());
+  return pose;
+}
+
+void CheckIndices(const SqlConnection& db, ImagePair pair, const FeatureMatches& matches,
+                  const char* table) {
   if (matches.empty()) return;
   int64_t num_keypoints[2] = {0, 0};
   for (int i = 0; i < 2; ++i) {
-    SqlStatement row(path_, db_, "SELECT rows FROM keypoints WHERE image_id = ?");
+    SqlStatement row(db, "SELECT rows FROM keypoints WHERE image_id = ?");
     row.Bind(static_cast<int64_t>(i == 0 ? pair.first : pair.second));
-    if (row.Step()) num_keypoints[i] = row.Int(0);
+    if (row.Step()) num_keypoints[i] = row[0].Int();
   }
   for (const FeatureMatch& match : matches) {
     if (match.idx1 >= num_keypoints[0] || match.idx2 >= num_keypoints[1]) {
-      throw Error(path_,
+      throw Error(db.path,
                   std::string(table) + " of " + PairText(pair) + " name keypoints " +
                       std::to_string(match.idx1) + " and " + std::to_string(match.idx2) +
                       ", but the images have " + std::to_string(num_keypoints[0]) + " and " +
@@ -155,61 +155,95 @@ void ColmapDatabase::CheckIndices(ImagePair pair, const FeatureMatches& matches,
   }
 }
 
-FeatureMatches ColmapDatabase::ReadMatches(ImagePair pair) const {
-  SqlStatement row(path_, db_, "SELECT rows, cols, data FROM matches WHERE pair_id = ?");
+}  // namespace
+
+bool HasMatches(const ColmapDatabase& database, ImagePair pair) {
+  return HasRow(
+      database.Connection(),
+      "SELECT 1 FROM two_view_geometries WHERE pair_id = ? AND (rows <> 0 OR config <> 0)",
+      PairId(pair));
+}
+
+void WriteMatches(ColmapDatabase* database, uint32_t image_id1, uint32_t image_id2,
+                  const FeatureMatches& raw, const TwoViewGeometry& geometry) {
+  if (image_id1 > image_id2) {
+    return WriteMatches(database, image_id2, image_id1, SwapColumns(raw), Swap(geometry));
+  }
+  const SqlConnection& db = database->Connection();
+  const int64_t pair_id = PairId({image_id1, image_id2});
+  SqlSavepoint savepoint(db);
+  WriteRaw(db, pair_id, raw);
+  WriteGeometry(db, database->Extras().has_poses, pair_id, geometry);
+  savepoint.Release();
+}
+
+FeatureMatches ReadMatches(const ColmapDatabase& database, ImagePair pair) {
+  const SqlConnection& db = database.Connection();
+  SqlStatement row(db, "SELECT rows, cols, data FROM matches WHERE pair_id = ?");
   row.Bind(PairId(pair));
   if (!row.Step()) return {};
-  FeatureMatches matches = TakeMatches(path_, "the matches of " + PairText(pair), row, 0);
-  CheckIndices(pair, matches, "the matches");
+  FeatureMatches matches = TakeMatches(db.path, "the matches of " + PairText(pair), row, 0);
+  CheckIndices(db, pair, matches, "the matches");
   return matches;
 }
 
-TwoViewGeometry ColmapDatabase::ReadTwoViewGeometry(ImagePair pair) const {
+TwoViewGeometry ReadTwoViewGeometry(const ColmapDatabase& database, ImagePair pair) {
+  const SqlConnection& db = database.Connection();
+  const bool has_poses = database.Extras().has_poses;
   TwoViewGeometry geometry;
-  SqlStatement row(path_, db_,
-                   std::string("SELECT rows, cols, data, config, F, E, H") +
-                       (extras_.has_poses ? ", qvec, tvec" : "") +
-                       " FROM two_view_geometries WHERE pair_id = ?");
+  SqlStatement row(db, std::string("SELECT rows, cols, data, config, F, E, H") +
+                           (has_poses ? ", qvec, tvec" : "") +
+                           " FROM two_view_geometries WHERE pair_id = ?");
   row.Bind(PairId(pair));
   if (!row.Step()) return geometry;
   const std::string who = "the two-view geometry of " + PairText(pair);
-  geometry.inliers = TakeMatches(path_, "the verified matches of " + PairText(pair), row, 0);
-  CheckIndices(pair, geometry.inliers, "the verified matches");
-  const int64_t config = row.Int(3);
+  geometry.inliers = TakeMatches(db.path, "the verified matches of " + PairText(pair), row, 0);
+  CheckIndices(db, pair, geometry.inliers, "the verified matches");
+  const int64_t config = row[3].Int();
   if (config >= 0 && config <= static_cast<int64_t>(TwoViewConfig::kPlanarOrPanoramic)) {
     geometry.config = static_cast<TwoViewConfig>(config);
   }
   std::optional<Eigen::Matrix3d>* matrices[3] = {&geometry.F, &geometry.E, &geometry.H};
   for (int i = 0; i < 3; ++i) {
-    const auto matrix = TakeMatrix<RowMajorMatrix3d>(path_, who, row, 4 + i);
+    const auto matrix = TakeMatrix<RowMajorMatrix3d>(db.path, who, row, 4 + i);
     if (matrix) *matrices[i] = *matrix;
   }
-  if (extras_.has_poses) {
-    const auto qvec = TakeMatrix<Eigen::Vector4d>(path_, who, row, 7);
-    const auto tvec = TakeMatrix<Eigen::Vector3d>(path_, who, row, 8);
-    if (qvec) {
-      Rigid3d pose;
-      pose.rotation =
-          Eigen::Quaterniond((*qvec)[0], (*qvec)[1], (*qvec)[2], (*qvec)[3]).normalized();
-      pose.translation = tvec.value_or(Eigen::Vector3d::Zero());
-      geometry.cam2_from_cam1 = pose;
-    }
-  }
+  if (has_poses) geometry.cam2_from_cam1 = TakePose(db.path, who, row);
   return geometry;
 }
 
-std::vector<ImagePair> ColmapDatabase::ReadVerifiedPairs() const {
+std::vector<ImagePair> ReadVerifiedPairs(const ColmapDatabase& database) {
+  const SqlConnection& db = database.Connection();
   std::vector<ImagePair> pairs;
-  SqlStatement rows(path_, db_,
+  SqlStatement rows(db,
                     "SELECT pair_id / ?1 AS id1, pair_id % ?1 AS id2 FROM two_view_geometries "
                     "WHERE rows > 0 AND EXISTS(SELECT 1 FROM images WHERE image_id = id1) "
                     "AND EXISTS(SELECT 1 FROM images WHERE image_id = id2) ORDER BY pair_id");
   rows.Bind(kMaxImageId);
   while (rows.Step()) {
-    const ImagePair pair(static_cast<uint32_t>(rows.Int(0)), static_cast<uint32_t>(rows.Int(1)));
+    const ImagePair pair(static_cast<uint32_t>(rows[0].Int()),
+                         static_cast<uint32_t>(rows[1].Int()));
     if (pair.first < pair.second) pairs.push_back(pair);
   }
   return pairs;
+}
+
+void DeleteMatchesOfImage(ColmapDatabase* database, uint32_t image_id) {
+  for (const char* table : {"matches", "two_view_geometries"}) {
+    SqlStatement(database->Connection(), std::string("DELETE FROM ") + table +
+                                             " WHERE pair_id / ?2 = ?1 OR pair_id % ?2 = ?1")
+        .Bind(static_cast<int64_t>(image_id))
+        .Bind(kMaxImageId)
+        .Run();
+  }
+}
+
+void DeleteMatchesOfPair(ColmapDatabase* database, ImagePair pair) {
+  for (const char* table : {"matches", "two_view_geometries"}) {
+    SqlStatement(database->Connection(), std::string("DELETE FROM ") + table + " WHERE pair_id = ?")
+        .Bind(PairId(pair))
+        .Run();
+  }
 }
 
 }  // namespace colmap_seapoint
