@@ -3,29 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <nanoflann.hpp>
 
 namespace colmap_seapoint {
 namespace {
 
 constexpr double kRelativeSlack = 1 + 1e-9;  // more than what rounding does to a square
-
-// What nanoflann asks for: the nearest so far.
-struct NearestResult {
-  double best;
-  bool skip_zero;
-
-  double worstDist() const { return best; }
-  bool full() const { return true; }
-  size_t size() const { return 1; }
-  // Offered all of a leaf that was nearer than the best when the leaf was entered. False ends the
-  // search: nothing is nearer than 0.
-  bool addPoint(double squared, uint32_t) {
-    if (squared >= best || (skip_zero && squared == 0)) return true;
-    best = squared;
-    return best > 0;
-  }
-};
 
 bool LessPlace(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
@@ -55,40 +37,6 @@ PointVector Candidates(const PointTiles& cloud, int tile, const PointVector& que
 }
 
 }  // namespace
-
-struct PointIndex::Tree {
-  using Index = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Tree>,
-                                                    Tree, 3, uint32_t>;
-
-  explicit Tree(const PointVector& p)
-      : points(p), index(3, *this, nanoflann::KDTreeSingleIndexAdaptorParams(12)) {
-    index.buildIndex();
-  }
-  size_t kdtree_get_point_count() const { return points.size(); }
-  double kdtree_get_pt(size_t i, size_t axis) const {
-    return points[i][static_cast<Eigen::Index>(axis)];
-  }
-  template <typename Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-
-  const PointVector& points;
-  Index index;
-};
-
-PointIndex::PointIndex(const PointVector& points) {
-  if (!points.empty()) tree_ = std::make_unique<Tree>(points);
-}
-
-PointIndex::~PointIndex() = default;
-
-void PointIndex::Nearest(const Eigen::Vector3d& place, NearestOf what, double* squared) const {
-  if (!tree_ || *squared == 0) return;
-  NearestResult result{*squared, what == NearestOf::kOtherPlace};
-  tree_->index.findNeighbors(result, place.data(), nanoflann::SearchParams());
-  *squared = result.best;
-}
 
 std::vector<double> NearestSquared(const PointTiles& cloud, int tile, const PointVector& queries,
                                    double max_distance, NearestOf what) {

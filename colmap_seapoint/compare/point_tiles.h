@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "colmap_seapoint/compare/plan_view.h"
+#include "colmap_seapoint/compare/point_vector.h"
 #include "colmap_seapoint/compare/tile_partition.h"
 #include "colmap_seapoint/io/cloud/tile_store.h"
 
 namespace colmap_seapoint {
 
-using PointVector = std::vector<Eigen::Vector3d>;
 using CountCallback = std::function<void(int64_t num_points)>;  // called every now and then
 
 struct CloudSurvey {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "colmap_seapoint/compare/cell_map.h"
-#include "colmap_seapoint/compare/nearest.h"
+#include "colmap_seapoint/compare/point_index.h"
 
 namespace colmap_seapoint {
 namespace {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "colmap_seapoint/base/median.h"
+#include "colmap_seapoint/georeference/position_consensus.h"
 #include "colmap_seapoint/georeference/similarity_solver.h"
 
 namespace colmap_seapoint {
@@ -23,10 +24,10 @@ constexpr double kMaxLengthResidual = 3.3;
 constexpr double kMaxTurnSigmaDeg = 3;
 constexpr double kMinLevellingSine = 0.2;
 constexpr int kMaxRounds = 10;
-// Positions nearer to a line than this share of their extent say nothing of the turn about it.
+// Positions that stay within this share of their extent of a line say nothing of the turn about it.
 constexpr double kLine = 1e-3;
 
-// The one length's scale that the others like best.
+// Of the scales that the lengths give one by one, the one that suits all of them best.
 double ConsensusScale(const std::vector<LengthMeasurement>& lengths) {
   double best = 0, best_cost = std::numeric_limits<double>::infinity();
   for (const LengthMeasurement& candidate : lengths) {
@@ -44,6 +45,7 @@ double ConsensusScale(const std::vector<LengthMeasurement>& lengths) {
   return best;
 }
 
+// Which measurements agree with the similarity; all count where they are too few to tell.
 void Choose(const Similarity3d& similarity, State* state) {
   const auto& positions = state->problem.positions;
   for (size_t i = 0; i < positions.size() && state->has_positions; ++i) {
@@ -64,7 +66,7 @@ size_t Count(const std::vector<bool>& used) {
   return static_cast<size_t>(std::count(used.begin(), used.end(), true));
 }
 
-// Sigmas that the lengths' own scatter shows to be too small.
+// By how much the lengths' own scatter shows their sigmas to be too small; 1 where it does not.
 double LengthFactor(const std::vector<LengthMeasurement>& lengths, double scale) {
   if (lengths.size() < kMinLengthsForOutliers) return 1;
   std::vector<double> residuals;
@@ -75,7 +77,7 @@ double LengthFactor(const std::vector<LengthMeasurement>& lengths, double scale)
   return std::max(1.0, 1.4826 * UpperMedian(residuals));
 }
 
-// Scale alone: the weighted mean, with the outliers chosen anew each time.
+// For lengths alone: the scale is their weighted mean, with the outliers chosen anew each time.
 Solution SolveScale(State* state) {
   const auto& lengths = state->problem.lengths;
   Solution solution;
@@ -100,7 +102,7 @@ Solution SolveScale(State* state) {
   return solution;
 }
 
-// The start with another scale, about the middle of the positions.
+// The start with another scale; the middle of the positions stays where it is.
 Similarity3d WithScale(const State& state, const Similarity3d& start, double scale) {
   const Eigen::Vector3d pivot = PivotOf(state);
   Similarity3d result = start;
@@ -134,7 +136,7 @@ Solution SolveAll(const PositionConsensus& consensus, State* state) {
   return best;
 }
 
-// Second over first extent of the camera centres.
+// Second over first extent of the camera centres: 0 where they lie on a line.
 double Slenderness(const std::vector<PositionMeasurement>& positions) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const auto& position : positions) {
@@ -149,8 +151,8 @@ double Slenderness(const std::vector<PositionMeasurement>& positions) {
   return std::sqrt(std::max(0.0, eigen.eigenvalues()[1]) / eigen.eigenvalues()[2]);
 }
 
-// Level, across the line from the farthest used position through their middle; nullopt when the
-// line is steep or the cameras look along it.
+// The level direction across the line from the positions' middle to the farthest one; nullopt when
+// the line is steep or the cameras look along it.
 std::optional<Eigen::Vector3d> AcrossLine(const SimilarityProblem& problem,
                                           const Similarity3d& similarity) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -169,7 +171,8 @@ std::optional<Eigen::Vector3d> AcrossLine(const SimilarityProblem& problem,
   return across.normalized();
 }
 
-// The positions' frame is levelled: they say too little of the turn about their line.
+// For positions that say too little of the turn about their line: the cameras level it.
+// `known_factor`: of the sigmas; 0: the scatter tells.
 std::optional<Solution> SolveLevelled(State* state, double known_factor) {
   const SimilarityProblem& problem = state->problem;
   if (problem.down_in_model.norm() == 0) return std::nullopt;
@@ -186,7 +189,7 @@ bool HasSigmas(const SimilarityProblem& problem) {
   return problem.positions.front().sigma.minCoeff() > 0;
 }
 
-// Positions, and lengths if there are any. Sets estimate->problem when it cannot be done.
+// From positions, and lengths if there are any. Sets estimate->problem when they do not suffice.
 Solution SolveWithPositions(State* state, SimilarityEstimate* estimate) {
   const SimilarityProblem& problem = state->problem;
   const double slenderness = Slenderness(problem.positions);

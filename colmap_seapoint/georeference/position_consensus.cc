@@ -16,13 +16,16 @@ constexpr size_t kMinForOutliers = 5;
 constexpr int kMaxRounds = 30;
 // Median length of a vector of three normal numbers.
 constexpr double kMedianOfChi3 = 1.5382;
-// A direction this near to the line (sine of the angle) cannot tell the turn about it.
+// A direction nearer to the line than this (sine of the angle) cannot tell the turn about it.
 constexpr double kMinLevellingSine = 0.2;
-// Exact positions scatter by nothing: what counts as agreement then, share of their extent.
+// Exact positions scatter by nothing; they agree when they do within this share of their extent.
 constexpr double kExact = 1e-9;
 
+using Indices = std::vector<size_t>;
+
+// Least squares of all three axes alike; nullopt where the chosen positions are all in one place.
 std::optional<Similarity3d> FitAll(const std::vector<PositionMeasurement>& positions,
-                                   const std::vector<size_t>& chosen) {
+                                   const Indices& chosen) {
   const auto count = static_cast<Eigen::Index>(chosen.size());
   Eigen::Matrix3Xd from(3, count), to(3, count);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -42,16 +45,15 @@ std::optional<Similarity3d> FitAll(const std::vector<PositionMeasurement>& posit
   return similarity;
 }
 
-// Of points on a line: the line through the chosen ones, then the levelled turn about it.
+// For positions on a line: the line through the chosen ones, then the levelled turn about it.
 std::optional<Similarity3d> FitLine(const std::vector<PositionMeasurement>& positions,
-                                    const std::vector<size_t>& chosen,
-                                    const Eigen::Vector3d& down_in_model) {
+                                    const Indices& chosen, const Eigen::Vector3d& down_in_model) {
   Eigen::Vector3d from_mean = Eigen::Vector3d::Zero(), to_mean = from_mean;
   for (const size_t i : chosen) {
     from_mean += positions[i].in_model / static_cast<double>(chosen.size());
     to_mean += positions[i].metres / static_cast<double>(chosen.size());
   }
-  // The model's own line is exact enough to order by; the measured one follows it by least squares.
+  // The model's own line is exact enough to be the axis; the measured one follows by least squares.
   size_t farthest = chosen.front();
   for (const size_t i : chosen) {
     if ((positions[i].in_model - from_mean).norm() >
@@ -71,46 +73,58 @@ std::optional<Similarity3d> FitLine(const std::vector<PositionMeasurement>& posi
                             down_in_model);
 }
 
-struct Sampler {
-  size_t num_positions, sample_size;
-  std::mt19937_64 random;
-  std::vector<size_t> next;
+// Draws minimal samples: all of them in order, where they are few; else random ones.
+class Sampler {
+ public:
+  Sampler(size_t num_positions, size_t sample_size, int seed)
+      : num_positions_(num_positions),
+        sample_size_(sample_size),
+        random_(static_cast<uint64_t>(seed)) {}
 
-  // All samples in order, where they are few; then random ones. False at the end.
-  bool Next(size_t drawn, std::vector<size_t>* sample) {
-    if (IsExhaustive()) return NextInOrder(drawn, sample);
-    if (drawn >= kMaxSamples) return false;
-    sample->clear();
-    while (sample->size() < sample_size) {
-      const size_t i = static_cast<size_t>(random() % num_positions);
-      if (std::find(sample->begin(), sample->end(), i) == sample->end()) sample->push_back(i);
-    }
-    return true;
+  // The next sample, valid until the next call; nullptr after the last one.
+  const Indices* Next() {
+    const bool has_next = IsExhaustive() ? NextInOrder() : NextAtRandom();
+    return has_next ? &sample_ : nullptr;
   }
 
  private:
   bool IsExhaustive() const {
-    const double n = static_cast<double>(num_positions);
-    const double count = sample_size == 2 ? n * (n - 1) / 2 : n * (n - 1) * (n - 2) / 6;
+    const double n = static_cast<double>(num_positions_);
+    const double count = sample_size_ == 2 ? n * (n - 1) / 2 : n * (n - 1) * (n - 2) / 6;
     return count <= static_cast<double>(kMaxSamples);
   }
 
-  bool NextInOrder(size_t drawn, std::vector<size_t>* sample) {
-    if (drawn == 0) {
-      next.resize(sample_size);
-      std::iota(next.begin(), next.end(), size_t{0});
-    } else {
-      size_t k = sample_size;
-      while (k > 0 && next[k - 1] == num_positions - sample_size + k - 1) --k;
-      if (k == 0) return false;
-      ++next[k - 1];
-      for (; k < sample_size; ++k) next[k] = next[k - 1] + 1;
+  bool NextInOrder() {
+    if (sample_.empty()) {
+      sample_.resize(sample_size_);
+      std::iota(sample_.begin(), sample_.end(), size_t{0});
+      return true;
     }
-    *sample = next;
+    size_t k = sample_size_;
+    while (k > 0 && sample_[k - 1] == num_positions_ - sample_size_ + k - 1) --k;
+    if (k == 0) return false;
+    ++sample_[k - 1];
+    for (; k < sample_size_; ++k) sample_[k] = sample_[k - 1] + 1;
     return true;
   }
+
+  bool NextAtRandom() {
+    if (num_drawn_++ == kMaxSamples) return false;
+    sample_.clear();
+    while (sample_.size() < sample_size_) {
+      const size_t i = static_cast<size_t>(random_() % num_positions_);
+      if (std::find(sample_.begin(), sample_.end(), i) == sample_.end()) sample_.push_back(i);
+    }
+    return true;
+  }
+
+  const size_t num_positions_, sample_size_;
+  std::mt19937_64 random_;
+  size_t num_drawn_ = 0;
+  Indices sample_;
 };
 
+// Of the camera centres, in metres, over the given sigma where there is one.
 double Extent(const std::vector<PositionMeasurement>& positions, const Similarity3d& similarity) {
   Eigen::Vector3d low = positions.front().in_model, high = low;
   for (const PositionMeasurement& position : positions) {
@@ -121,7 +135,6 @@ double Extent(const std::vector<PositionMeasurement>& positions, const Similarit
   return similarity.scale * (high - low).norm() / (sigma > 0 ? sigma : 1);
 }
 
-using Indices = std::vector<size_t>;
 using Fit = std::function<std::optional<Similarity3d>(const Indices&)>;
 
 struct Start {
@@ -135,12 +148,11 @@ Start LeastQuantile(const std::vector<PositionMeasurement>& positions, size_t sa
   const size_t count = positions.size();
   const auto rank = static_cast<std::ptrdiff_t>(std::min(count - 1, count / 2 + 1));
   std::vector<double> residuals(count);
-  Sampler sampler{count, sample_size, std::mt19937_64(static_cast<uint64_t>(seed)), {}};
-  Indices sample;
+  Sampler sampler(count, sample_size, seed);
   Start start;
   double best = std::numeric_limits<double>::infinity();
-  for (size_t drawn = 0; sampler.Next(drawn, &sample); ++drawn) {
-    const auto similarity = fit(sample);
+  while (const Indices* sample = sampler.Next()) {
+    const auto similarity = fit(*sample);
     if (!similarity) continue;
     for (size_t i = 0; i < count; ++i) {
       residuals[i] = NormalisedResidual(positions[i], *similarity);
@@ -150,11 +162,12 @@ Start LeastQuantile(const std::vector<PositionMeasurement>& positions, size_t sa
     best = residuals[static_cast<size_t>(rank)];
     start.similarity = similarity;
   }
-  // What minimal samples leave is too small where positions are few.
+  // Where positions are few, the best minimal sample leaves residuals that are too small.
   start.sigma = best / kMedianOfChi3 * (1 + 5.0 / static_cast<double>(count));
   return start;
 }
 
+// Standard deviation from the residuals of the chosen positions.
 double Scatter(const std::vector<PositionMeasurement>& positions, const Indices& chosen,
                const Similarity3d& similarity, double num_unknowns) {
   double square = 0;

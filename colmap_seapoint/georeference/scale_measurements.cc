@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/median.h"
@@ -19,12 +18,12 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr size_t kNamesInWarning = 5;
-// Coordinates beyond this are given an offset, a multiple of kOffsetStep: floats have 7 digits.
+// Coordinates beyond this (metres) get an offset, a multiple of kOffsetStep: a float has 7 digits.
 constexpr double kMaxCoordinate = 1000;
 constexpr double kOffsetStep = 100;
-// Of the origin of latitude and longitude: about a metre.
+// The origin's latitude and longitude are rounded to this, about a metre.
 constexpr double kOriginStepDeg = 1e-5;
-// Cameras whose axes add up to less than this share of their number look all round.
+// Cameras whose viewing directions add up to less than this share of their number look all round.
 constexpr double kMinMeanAxis = 0.5;
 constexpr char kPositionsOption[] = "--positions_path";
 
@@ -47,8 +46,8 @@ GeoPosition Geo(const Eigen::Vector3d& position) {
   return {position.x(), position.y(), position.z()};
 }
 
-// Metres in the frame that `units` comes to describe. Offset and origin are of the whole table, so
-// that all models of a dive share them.
+// Turns the table's positions into metres, and describes their frame in `units`. Offset and origin
+// come from the whole table, so that all models of a dive share them.
 void ToFrame(const std::string& crs, PicturePositions* table, ModelUnits* units) {
   units->crs = crs;
   if (table->is_geographic && crs.empty()) {
@@ -64,7 +63,7 @@ void ToFrame(const std::string& crs, PicturePositions* table, ModelUnits* units)
   }
   units->frame = crs.empty() ? "local" : "projected";
   if (!crs.empty()) {
-    const MapProjection projection(crs);  // of metres, too: the name is checked
+    const MapProjection projection(crs);  // even where it converts nothing, it checks the name
     for (auto& [name, position] : table->positions) {
       if (table->is_geographic) position = projection.FromGeographic(Geo(position));
     }
@@ -173,18 +172,19 @@ Targets TriangulateTargets(const SparseModel& model, const ScaleSources& sources
   return targets;
 }
 
+// Where the end of a bar lies in the model.
 struct Place {
+  std::string problem;  // why it has no place; empty: it has one
   Eigen::Vector3d xyz = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // model units squared
 };
 
-// nullopt with a problem when the end has no place in this model.
-std::optional<Place> PlaceOf(const SparseModel& model, const ScaleSources& sources,
-                             const ScaleBar& bar, const ScaleBarEnd& end, const Targets& targets,
-                             std::string* problem) {
+// Throws Error when the end names nothing that there is.
+Place PlaceOf(const SparseModel& model, const ScaleSources& sources, const ScaleBar& bar,
+              const ScaleBarEnd& end, const Targets& targets) {
   if (end.point3D_id) {
     const auto point = model.points3D.find(*end.point3D_id);
-    if (point != model.points3D.end()) return Place{point->second.xyz, Eigen::Matrix3d::Zero()};
+    if (point != model.points3D.end()) return {"", point->second.xyz, Eigen::Matrix3d::Zero()};
     throw Error(bar.where, "the model has no 3D point " + std::to_string(*end.point3D_id),
                 "give the id of a point of this very model");
   }
@@ -196,9 +196,26 @@ std::optional<Place> PlaceOf(const SparseModel& model, const ScaleSources& sourc
                     : "mark it in " + sources.targets_path +
                           ", or write point:ID for a 3D point of the model");
   }
-  if (target->second.problem.empty()) return Place{target->second.xyz, target->second.covariance};
-  *problem = "target " + end.name + " " + target->second.problem;
-  return std::nullopt;
+  const TriangulatedTarget& found = target->second;
+  if (found.problem.empty()) return {"", found.xyz, found.covariance};
+  Place nowhere;
+  nowhere.problem = "target " + end.name + " " + found.problem;
+  return nowhere;
+}
+
+// Why the length between two places cannot be used; "" when it can.
+std::string Fault(const Place& a, const Place& b) {
+  if (!b.problem.empty()) return b.problem;
+  if (!a.problem.empty()) return a.problem;
+  return (b.xyz - a.xyz).norm() > 0 ? "" : "its two ends coincide in the model";
+}
+
+LengthMeasurement LengthBetween(const Place& a, const Place& b) {
+  const Eigen::Vector3d between = b.xyz - a.xyz, along = between.normalized();
+  LengthMeasurement length;
+  length.in_model = between.norm();
+  length.in_model_sigma = std::sqrt(along.dot((a.covariance + b.covariance) * along));
+  return length;
 }
 
 void AddBars(const SparseModel& model, const ScaleSources& sources, ScaleMeasurements* result,
@@ -208,20 +225,14 @@ void AddBars(const SparseModel& model, const ScaleSources& sources, ScaleMeasure
   const Targets targets = TriangulateTargets(model, sources, result);
   for (const ScaleBar& bar : bars) {
     const std::string name = bar.ends[0].name + " - " + bar.ends[1].name;
-    std::string problem;
-    const auto a = PlaceOf(model, sources, bar, bar.ends[0], targets, &problem);
-    const auto b = PlaceOf(model, sources, bar, bar.ends[1], targets, &problem);
-    const Eigen::Vector3d between =
-        a && b ? Eigen::Vector3d(b->xyz - a->xyz) : Eigen::Vector3d::Zero().eval();
-    if (problem.empty() && !(between.norm() > 0)) problem = "its two ends coincide in the model";
-    if (!problem.empty()) {
-      LeaveOut("scale bar " + name, problem, report);
+    const Place a = PlaceOf(model, sources, bar, bar.ends[0], targets);
+    const Place b = PlaceOf(model, sources, bar, bar.ends[1], targets);
+    const std::string fault = Fault(a, b);
+    if (!fault.empty()) {
+      LeaveOut("scale bar " + name, fault, report);
       continue;
     }
-    const Eigen::Vector3d along = between.normalized();
-    LengthMeasurement length;
-    length.in_model = between.norm();
-    length.in_model_sigma = std::sqrt(along.dot((a->covariance + b->covariance) * along));
+    LengthMeasurement length = LengthBetween(a, b);
     length.metres = bar.metres;
     length.sigma = bar.sigma.value_or(sources.length_sigma);
     result->problem.lengths.push_back(length);

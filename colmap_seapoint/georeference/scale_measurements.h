@@ -26,7 +26,7 @@ struct ScaleSources {
 
   void Bind(OptionTable* table);
   bool Any() const;
-  // "" or the whole sentence: options that do not go together.
+  // "", or the whole sentence about options that do not go together.
   std::string Check() const;
 };
 
@@ -41,17 +41,17 @@ struct ScaleMeasurements {
   SimilarityProblem problem;
   std::vector<std::string> position_names, length_names;  // one a measurement, in its order
   std::vector<TargetSummary> targets;
-  ModelUnits units;  // what positions make of the model
+  ModelUnits units;  // what the model's coordinates mean once it is scaled
 };
 
-// Throws Error for a bad table: before hours of work.
+// Reads all tables, so that a bad one throws its Error before hours of work, not after them.
 void CheckScaleTables(const ScaleSources& sources);
 
-// Reads the tables, triangulates the targets and finds the pictures. What the model does not hold
-// (pictures of the tables, as those of other models) is said once, on stderr; bars that have no two
-// ends in the model are left out by name. Throws Error for a bad table, a point:ID that is not
-// there, a mark outside its picture, a rig without simultaneous pictures, and when nothing of the
-// sources is in the model.
+// Reads the tables, triangulates the targets and finds the pictures. Pictures of the tables that
+// the model does not hold (they may be in other models) are named once, on stderr; bars that do not
+// have both ends in the model are left out by name. `rig` is by image_idx of `model`. Throws Error
+// for a bad table, a point:ID that is not there, a mark outside its picture, a rig without
+// simultaneous pictures, and when nothing of the sources is in the model.
 ScaleMeasurements GatherMeasurements(const SparseModel& model, const ScaleSources& sources,
                                      const StereoRig& rig, int seed, RunReport* report);
 

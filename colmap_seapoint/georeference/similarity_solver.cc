@@ -11,27 +11,26 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr double kDegreesPerRadian = 180 / 3.14159265358979323846;
-// How far the mean viewing direction of cameras that look down is off the vertical plane of their
-// track.
+// Standard deviation of the angle between the mean viewing direction of cameras that look down and
+// the vertical plane of their track.
 constexpr double kLevellingSigma = 3 / kDegreesPerRadian;
 constexpr double kMinRelativeSigma = 1e-9;  // of exact measurements
 constexpr double kLossWidth = 2;            // sigmas
 
-// Unknowns: log of the scale over the start's, rotation vector after the start's rotation (metric
-// axes), translation of the pivot.
+// The unknowns: the logarithm of the scale over the start's; the rotation vector that follows the
+// start's rotation (metric axes); the translation of the pivot.
 using Unknowns = std::array<double, 7>;
 
-// The frame in which the solver works: `pivot` (model) goes to `centre` (metres) at the start.
+// Where the solver starts, and about which place of the model (its pivot) it turns and scales.
 struct Linearisation {
   Similarity3d start;
   Eigen::Vector3d pivot = Eigen::Vector3d::Zero();
 };
 
 Similarity3d Apply(const Linearisation& at, const Unknowns& x) {
-  Eigen::Quaterniond turn;
   double wxyz[4];
   ceres::AngleAxisToQuaternion(&x[1], wxyz);
-  turn = Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+  const Eigen::Quaterniond turn(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
   Similarity3d result;
   result.scale = at.start.scale * std::exp(x[0]);
   result.rotation = (turn * at.start.rotation).normalized();
@@ -68,7 +67,7 @@ struct LengthResidual {
   }
 };
 
-// The mean viewing direction across the vertical plane of the line.
+// How far the mean viewing direction leaves the vertical plane of the line.
 struct LevellingResidual {
   Eigen::Vector3d down;    // at the start
   Eigen::Vector3d across;  // level, across the line

@@ -6,22 +6,25 @@
 #include <optional>
 #include <vector>
 
-#include "colmap_seapoint/georeference/estimate_similarity.h"
+#include "colmap_seapoint/base/similarity3.h"
+#include "colmap_seapoint/georeference/similarity_problem.h"
 
 namespace colmap_seapoint {
 
 // What is being estimated, and from what.
 struct EstimationState {
   const SimilarityProblem& problem;
-  std::optional<Eigen::Vector3d> across;  // of the line, where it is levelled
+  // Level and across the line of the positions, metric axes; only where the line is levelled.
+  std::optional<Eigen::Vector3d> across;
   double position_factor = 1, length_factor = 1;
   std::vector<bool> position_used, length_used;
   bool has_positions = false;
 };
 
-// Of the scaled length, by the length's own and the model's uncertainty; never zero.
+// Standard deviation of the length's residual, metres, by the length's own and the model's
+// uncertainty; never zero.
 double LengthSigma(const LengthMeasurement& length, double scale);
-// Of each axis, metres.
+// Standard deviation of each axis of a position, metres.
 Eigen::Vector3d PositionSigma(const EstimationState& state, const PositionMeasurement& position);
 
 // The mean of the used positions, model units.

@@ -25,7 +25,8 @@ std::optional<Ray> RayOf(const TargetView& view) {
              (view.cam_from_world.rotation.conjugate() * in_cam).normalized()};
 }
 
-// Where two rays pass each other, in front of both cameras.
+// The middle between the two places where the rays are nearest to each other; nullopt where that is
+// not in front of both cameras, or the rays are too nearly parallel.
 std::optional<Eigen::Vector3d> Meet(const Ray& a, const Ray& b) {
   if (a.direction.cross(b.direction).norm() < std::sin(kMinRayAngle)) return std::nullopt;
   const double cosine = a.direction.dot(b.direction);
@@ -47,7 +48,8 @@ double Error(const TargetView& view, const Eigen::Vector3d& xyz) {
   return Residual(view, xyz).norm();
 }
 
-// Pixels a model unit, by central differences: 18 lens models need no derivative of their own.
+// How many pixels the projection moves a model unit. By central differences, so that none of the 18
+// lens models needs a derivative of its own.
 Eigen::Matrix<double, 2, 3> Derivative(const TargetView& view, const Eigen::Vector3d& xyz) {
   const double step = 1e-5 * (view.cam_from_world * xyz).norm();
   Eigen::Matrix<double, 2, 3> derivative;
@@ -91,7 +93,7 @@ size_t NumUsed(const TriangulatedTarget& target) {
   return static_cast<size_t>(std::count(target.is_used.begin(), target.is_used.end(), true));
 }
 
-// The meeting point of two rays that all views together like best.
+// Of the meeting points of any two rays, the one with the smallest error in all views together.
 std::optional<Eigen::Vector3d> BestMeeting(const std::vector<TargetView>& views, double max_error) {
   std::vector<std::optional<Ray>> rays;
   for (const TargetView& view : views) rays.push_back(RayOf(view));

@@ -1,5 +1,5 @@
-// A target that a person has marked in several pictures (the end of a scale bar, a ground control
-// point): its place in the model (ours).
+// The place in the model of a target that a person has marked in several pictures: the end of a
+// scale bar, or a ground control point (ours).
 #pragma once
 
 #include <Eigen/Core>
@@ -20,10 +20,11 @@ struct TargetView {
 struct TriangulatedTarget {
   std::string problem;                            // why it has no place; empty: it has one
   Eigen::Vector3d xyz = Eigen::Vector3d::Zero();  // model's frame
-  // Of xyz, model units squared, for marks that are 1 pixel off (the cameras taken as exact).
+  // Covariance of xyz, model units squared, for marks with a standard deviation of 1 pixel; the
+  // cameras are taken as exact.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  std::vector<double> errors;  // pixels, one a view; infinite behind a camera
-  std::vector<bool> is_used;   // one a view: within max_error
+  std::vector<double> errors;  // one a view, pixels; infinite where the place is behind the camera
+  std::vector<bool> is_used;   // one a view: whether its error is within max_error
 };
 
 // The place that most views agree on, from the best of all pairs of rays (at least half a degree

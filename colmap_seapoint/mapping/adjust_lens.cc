@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
+#include <utility>
 
-#include "colmap_seapoint/base/sparse_model.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/mapping/bundle_adjustment.h"
 #include "colmap_seapoint/mapping/retriangulate.h"
@@ -16,14 +17,14 @@ namespace fs = std::filesystem;
 
 constexpr size_t kMinPictures = 3;
 constexpr double kMaxPrincipalPointChange = 0.05;  // share of the longer side
-constexpr double kMaxFocalRatio = 2.0;             // or its inverse
+constexpr double kMaxFocalRatio = 2.0;             // up or down
 constexpr double kMaxFocalRatioOnceMore = 1.2;
 
 bool IsWithinRatio(double after, double before, double max_ratio) {
   return after <= max_ratio * before && before <= max_ratio * after;  // false for NaN
 }
 
-// "" when the lens has changed by no more than a calibration may.
+// "" when the lens has changed by no more than a calibration may, else what has.
 std::string LensFault(const Camera& before, const Camera& after, double max_focal_ratio) {
   if (!IsWithinRatio(after.FocalX(), before.FocalX(), max_focal_ratio) ||
       !IsWithinRatio(after.FocalY(), before.FocalY(), max_focal_ratio)) {
@@ -37,6 +38,7 @@ std::string LensFault(const Camera& before, const Camera& after, double max_foca
   return "";
 }
 
+// The same of all cameras of a model.
 std::string Fault(const SparseModel& before, const SparseModel& after, double max_focal_ratio) {
   for (const auto& [id, camera] : before.cameras) {
     const std::string fault = LensFault(camera, after.cameras.at(id), max_focal_ratio);
@@ -45,6 +47,7 @@ std::string Fault(const SparseModel& before, const SparseModel& after, double ma
   return "";
 }
 
+// What became of the first camera, as one line for the user.
 std::string Outcome(const SparseModel& before, const SparseModel& after) {
   const Camera& was = before.cameras.begin()->second;
   const Camera& is = after.cameras.begin()->second;
@@ -56,19 +59,33 @@ std::string Outcome(const SparseModel& before, const SparseModel& after) {
   return text;
 }
 
-// "" when the adjusted model has taken the model's place; else why not.
-std::string Adjust(bool frees_principal_point, double max_focal_ratio, const fs::path& model) {
-  const SparseModel before = ReadSparseModel(model);
-  if (before.images.size() < kMinPictures) return "too few pictures";
+// The adjusted model, or why the one before is better kept.
+struct Adjusted {
+  SparseModel model;
+  std::string fault;  // empty: the model is sound
+};
+
+Adjusted AdjustSoundly(const SparseModel& before, bool frees_principal_point,
+                       double max_focal_ratio) {
+  if (before.images.size() < kMinPictures) return {{}, "too few pictures"};
   BundleAdjustmentOptions options;
   options.refine_principal_point = frees_principal_point;
-  SparseModel after = before;
-  if (!AdjustBundle(options, &after)) return "the adjustment failed";
-  const std::string fault = Fault(before, after, max_focal_ratio);
-  if (!fault.empty()) return fault;
-  SortImagesById(&after);
-  WriteSparseModelBinary(model, after);
-  return fault;
+  std::optional<SparseModel> after = AdjustBundle(options, before);
+  if (!after) return {{}, "the adjustment failed"};
+  const std::string fault = Fault(before, *after, max_focal_ratio);
+  if (!fault.empty()) return {{}, fault};
+  SortImagesById(&*after);
+  return {std::move(*after), ""};
+}
+
+// The model as everybody will read it: rotations are made unit ones again by every reading.
+SparseModel WrittenAndRead(const fs::path& folder, const SparseModel& model) {
+  WriteSparseModelBinary(folder, model);
+  return ReadSparseModel(folder);
+}
+
+std::string Refusal(const char* what, const std::string& fault) {
+  return fault.empty() ? "" : std::string("; ") + what + " refused: " + fault;
 }
 
 }  // namespace
@@ -91,23 +108,28 @@ double ReprojectionError(const SparseModel& model) {
 }
 
 LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
-                          const fs::path& model) {
-  const SparseModel before = ReadSparseModel(model);
-  std::string refused;
-  const auto refuse = [&](const char* what, const std::string& fault) {
-    if (!fault.empty()) refused += std::string("; ") + what + " refused: " + fault;
-  };
-  const std::string fault = Adjust(job.frees_principal_point, kMaxFocalRatio, model);
-  refuse("lens", fault);
+                          const fs::path& folder) {
+  const SparseModel before = ReadSparseModel(folder);
   LensAdjustment result;
-  result.distortion_is_sound = fault.empty() || !job.frees_distortion;
-  refuse(
-      "triangulation",
-      Retriangulate(colmap, {job.database_path, job.image_path, job.options, job.log_path}, model));
-  if (fault.empty()) {
-    refuse("second adjustment", Adjust(job.frees_principal_point, kMaxFocalRatioOnceMore, model));
+  const Adjusted first = AdjustSoundly(before, job.frees_principal_point, kMaxFocalRatio);
+  const bool is_sound = first.fault.empty();
+  result.distortion_is_sound = is_sound || !job.frees_distortion;
+  result.model = is_sound ? WrittenAndRead(folder, first.model) : before;
+
+  const TriangulationJob triangulation_job = {job.database_path, job.image_path, job.options,
+                                              job.log_path};
+  const Triangulation triangulation =
+      Retriangulate(colmap, triangulation_job, folder, result.model);
+  if (triangulation.model) result.model = WrittenAndRead(folder, *triangulation.model);
+
+  Adjusted second;
+  if (is_sound) {
+    second = AdjustSoundly(result.model, job.frees_principal_point, kMaxFocalRatioOnceMore);
+    if (second.fault.empty()) result.model = WrittenAndRead(folder, second.model);
   }
-  result.outcome = Outcome(before, ReadSparseModel(model)) + refused;
+  result.outcome = Outcome(before, result.model) + Refusal("lens", first.fault) +
+                   Refusal("triangulation", triangulation.fault) +
+                   Refusal("second adjustment", second.fault);
   return result;
 }
 

@@ -4,19 +4,19 @@
 
 #include <algorithm>
 #include <map>
-#include <utility>
 
 #include "colmap_seapoint/base/camera_projection.h"
 
 namespace colmap_seapoint {
 namespace {
 
-// Above, the pictures' equations are solved as a sparse system.
+// Models of more pictures are solved as a sparse system.
 constexpr size_t kMaxPicturesOfDense = 50;
-// Beyond, only single points still move along their rays: a hundredfold smaller one takes twice the
-// time and moves the focal length by less than a hundredth of a pixel.
+// Steps that gain less than this only move single points along their rays: a tolerance a hundred
+// times smaller takes twice the time and moves the focal length by less than a hundredth of a
+// pixel.
 constexpr double kFunctionTolerance = 1e-6;
-// The damping that is always left: it is what holds the model's frame.
+// The damping never goes below the inverse of this: it is what holds the model's frame.
 constexpr double kMaxTrustRegionRadius = 1e8;
 
 size_t NumFocals(CameraModel model) {
@@ -83,13 +83,14 @@ struct PrincipalPointPrior {
   }
 };
 
+// Fills the problem with the model's own memory, which the solver then changes.
 class Adjustment {
  public:
   Adjustment(const BundleAdjustmentOptions& options, SparseModel* model)
       : options_(options), model_(model) {}
 
   bool Run() {
-    AddObservations();
+    for (PosedImage& image : model_->images) AddImage(&image);
     if (problem_.NumResidualBlocks() == 0) return false;
     for (auto& [id, camera] : model_->cameras) {
       if (problem_.HasParameterBlock(camera.params.data())) AddCamera(&camera);
@@ -100,50 +101,63 @@ class Adjustment {
   }
 
  private:
-  void AddObservations() {
-    auto* loss = new ceres::SoftLOneLoss(1);  // the problem deletes it once
-    for (PosedImage& image : model_->images) {
-      Camera& camera = model_->cameras.at(image.camera_id);
-      if (camera.model == CameraModel::kEquirectangular) continue;  // has no lens
-      Rigid3d& pose = image.cam_from_world;
-      for (size_t i = 0; i < image.points2D.size(); ++i) {
-        const uint64_t id = image.point3D_ids[i];
-        if (id == kNoPoint3D) continue;
-        Eigen::Vector3d& xyz = model_->points3D.at(id).xyz;
-        if (!camera.ImgFromCam(pose * xyz)) continue;
-        problem_.AddResidualBlock(
-            MakeReprojectionCost(camera, image.points2D[i], options_.observation_sigma), loss,
-            pose.rotation.coeffs().data(), pose.translation.data(), xyz.data(),
-            camera.params.data());
-      }
-      if (!problem_.HasParameterBlock(pose.translation.data())) continue;
-      problem_.SetManifold(pose.rotation.coeffs().data(), new ceres::EigenQuaternionManifold);
-      ++num_pictures_;
+  void AddImage(PosedImage* image) {
+    Camera& camera = model_->cameras.at(image->camera_id);
+    if (camera.model == CameraModel::kEquirectangular) return;  // has no lens
+    for (size_t i = 0; i < image->points2D.size(); ++i) {
+      if (image->point3D_ids[i] != kNoPoint3D) AddObservation(i, image, &camera);
     }
+    Rigid3d& pose = image->cam_from_world;
+    if (!problem_.HasParameterBlock(pose.translation.data())) return;
+    problem_.SetManifold(pose.rotation.coeffs().data(), new ceres::EigenQuaternionManifold);
+    ++num_pictures_;
+  }
+
+  void AddObservation(size_t idx, PosedImage* image, Camera* camera) {
+    Rigid3d& pose = image->cam_from_world;
+    Eigen::Vector3d& xyz = model_->points3D.at(image->point3D_ids[idx]).xyz;
+    if (!camera->ImgFromCam(pose * xyz)) return;
+    problem_.AddResidualBlock(
+        MakeReprojectionCost(*camera, image->points2D[idx], options_.observation_sigma), &loss_,
+        pose.rotation.coeffs().data(), pose.translation.data(), xyz.data(), camera->params.data());
   }
 
   void AddCamera(Camera* camera) {
-    const size_t idx = NumFocals(camera->model);
-    const int num_params = static_cast<int>(camera->params.size());
-    if (!options_.refine_principal_point) {
-      problem_.SetManifold(camera->params.data(),
-                           new ceres::SubsetManifold(
-                               num_params, {static_cast<int>(idx), static_cast<int>(idx) + 1}));
-      return;
+    if (options_.refine_principal_point) {
+      AddPrincipalPointPrior(camera);
+    } else {
+      HoldPrincipalPoint(camera);
     }
+  }
+
+  void HoldPrincipalPoint(Camera* camera) {
+    const int idx = static_cast<int>(NumFocals(camera->model));
+    const int num_params = static_cast<int>(camera->params.size());
+    problem_.SetManifold(camera->params.data(),
+                         new ceres::SubsetManifold(num_params, {idx, idx + 1}));
+  }
+
+  void AddPrincipalPointPrior(Camera* camera) {
     const double sigma = options_.principal_point_sigma * std::max(camera->width, camera->height);
-    auto* cost = new ceres::DynamicAutoDiffCostFunction<PrincipalPointPrior>(
-        new PrincipalPointPrior{idx, {camera->PrincipalX(), camera->PrincipalY()}, 1 / sigma});
-    cost->AddParameterBlock(num_params);
+    auto* cost =
+        new ceres::DynamicAutoDiffCostFunction<PrincipalPointPrior>(new PrincipalPointPrior{
+            NumFocals(camera->model), {camera->PrincipalX(), camera->PrincipalY()}, 1 / sigma});
+    cost->AddParameterBlock(static_cast<int>(camera->params.size()));
     cost->SetNumResiduals(2);
     problem_.AddResidualBlock(cost, nullptr, camera->params.data());
+  }
+
+  static ceres::Problem::Options ProblemOptions() {
+    ceres::Problem::Options options;
+    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;  // all residuals share one
+    return options;
   }
 
   ceres::Solver::Options SolverOptions() const {
     ceres::Solver::Options options;
     options.linear_solver_type =
         num_pictures_ <= kMaxPicturesOfDense ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
-    // Others hand the work to a BLAS, which has threads of its own.
+    // The other libraries hand the work to a BLAS, which has threads of its own.
     options.dense_linear_algebra_library_type = ceres::EIGEN;
     options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
     options.num_threads = 1;
@@ -156,7 +170,8 @@ class Adjustment {
 
   BundleAdjustmentOptions options_;
   SparseModel* model_;
-  ceres::Problem problem_;
+  ceres::SoftLOneLoss loss_{1};
+  ceres::Problem problem_{ProblemOptions()};
   size_t num_pictures_ = 0;
 };
 
@@ -178,13 +193,13 @@ void UpdatePointErrors(SparseModel* model) {
 
 }  // namespace
 
-bool AdjustBundle(const BundleAdjustmentOptions& options, SparseModel* model) {
-  SparseModel adjusted = *model;
-  if (!Adjustment(options, &adjusted).Run()) return false;
+std::optional<SparseModel> AdjustBundle(const BundleAdjustmentOptions& options,
+                                        const SparseModel& model) {
+  SparseModel adjusted = model;
+  if (!Adjustment(options, &adjusted).Run()) return std::nullopt;
   for (PosedImage& image : adjusted.images) image.cam_from_world.rotation.normalize();
   UpdatePointErrors(&adjusted);
-  *model = std::move(adjusted);
-  return true;
+  return adjusted;
 }
 
 }  // namespace colmap_seapoint

@@ -17,7 +17,7 @@ constexpr MapperDefault kEveryRound[] = {
     // With several threads the bundle adjustment adds in another order each time: two runs on the
     // same database give other models. A run that was interrupted must end as one that was not.
     {"Mapper.num_threads", "1"},
-    // 30 in COLMAP. Hazy water leaves fewer; 20 costs the clear sets nothing (same models).
+    // COLMAP asks for 30. Hazy water leaves fewer; 20 costs the clear sets nothing (same models).
     {"Mapper.abs_pose_min_num_inliers", "20"},
 };
 
@@ -47,7 +47,7 @@ constexpr MapperDefault kLaterRounds[] = {
 constexpr char kInstallRemedy[] =
     "install COLMAP 3.8 or later (Debian: apt install colmap), or give its path with --colmap_path";
 
-// "  --Mapper.min_model_size arg (=10)" -> "Mapper.min_model_size"; empty for other lines.
+// The name in a line as "  --Mapper.min_model_size arg (=10)"; "" for other lines.
 std::string OptionNameInHelp(const std::string& line) {
   const size_t begin = line.find("--");
   if (begin == std::string::npos || line.find_first_not_of(' ') < begin) return "";

@@ -15,29 +15,31 @@ struct ColmapProgram {
   std::filesystem::path path;
   std::string version;                      // its own first line, "COLMAP 3.8 (...)"
   bool has_global_mapper = false;           // 4.0 and later
-  std::vector<std::string> mapper_options;  // of both mappers; sorted names, without "--"
+  std::vector<std::string> mapper_options;  // names of both mappers, sorted, without "--"
   bool HasMapperOption(const std::string& name) const;
 };
 
 inline constexpr char kGlobalMapper[] = "global_mapper";
 
-// Finds `colmap` (a path, or a name on PATH) and asks it for its mapper's options, since their
-// names move between versions. Throws Error when it is missing or does not answer.
+// Finds `colmap` (a path, or a name on PATH) and asks it for the options of its mappers, since
+// their names change between versions. Throws Error when it is missing or does not answer as COLMAP
+// does. Cost: two or three starts of the program.
 ColmapProgram FindColmap(const std::string& colmap);
 
-// "--name value" of every option, behind the arguments there are.
+// Appends "--name" and "value" for every option, in the order of their names.
 void AppendOptions(const MapperOptions& options, std::vector<std::string>* arguments);
 
 enum class Round { kFirst, kLater };
 
-// What the mapper is given in a round: what suits SeaPoints (of later rounds: relaxed) and the
-// effort ("field", "survey" or "archive": how often it adjusts its models), as far as this version
-// knows it, then the user's options, which win. Throws UsageError for one of the user's that this
-// mapper does not know.
+// What the mapper is given in a round: what suits SeaPoints (relaxed in later rounds) and what the
+// effort asks for (how often it adjusts its models: "field" seldom, "survey" less than COLMAP does,
+// "archive" as COLMAP does), as far as this version knows the options; then the user's options,
+// which win. Throws UsageError for an option of the user's that this mapper does not know.
 MapperOptions OptionsOfRound(const ColmapProgram& colmap, Round round, const std::string& effort,
                              int random_seed, const MapperOptions& user_options);
 
-// nullopt where this COLMAP has no global mapper.
+// The same for the global mapper, which has no rounds and no effort; nullopt where this COLMAP has
+// none.
 std::optional<MapperOptions> OptionsOfGlobalMapper(const ColmapProgram& colmap, int random_seed);
 
 }  // namespace colmap_seapoint

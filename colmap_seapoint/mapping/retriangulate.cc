@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Pixels; 4 in COLMAP.
+// Pixels. COLMAP's own limits are 4.
 constexpr char kMaxError[] = "1.5";
 constexpr const char* kErrorLimits[] = {"Mapper.filter_max_reproj_error",
                                         "Mapper.tri_complete_max_reproj_error",
@@ -38,32 +38,33 @@ std::vector<std::string> Arguments(const ColmapProgram& colmap, const Triangulat
   return arguments;
 }
 
+// What speaks against taking `after` for `before`; "" when nothing does.
+std::string Fault(const SparseModel& before, const SparseModel& after) {
+  if (after.images.size() != before.images.size()) return "pictures were lost";
+  if (2 * after.points3D.size() < before.points3D.size()) return "points were lost";
+  return "";
+}
+
 }  // namespace
 
-std::string Retriangulate(const ColmapProgram& colmap, const TriangulationJob& job,
-                          const fs::path& model) {
-  const SparseModel before = ReadSparseModel(model);
-  const fs::path output = model.string() + ".triangulated";
+Triangulation Retriangulate(const ColmapProgram& colmap, const TriangulationJob& job,
+                            const fs::path& folder, const SparseModel& before) {
+  const fs::path output = folder.string() + ".triangulated";
   std::error_code error;
   fs::remove_all(output, error);
   fs::create_directories(output);
   const fs::path log = job.log_path.string() + "_triangulation.log";
-  const auto result = RunSubprocess(colmap.path, Arguments(colmap, job, model, output), log, {});
-  std::string fault;
-  if (!result.Succeeded() || !IsSparseModel(output)) {
-    fault = "the triangulation failed (" + result.Text() + ")";
+  const auto run = RunSubprocess(colmap.path, Arguments(colmap, job, folder, output), log, {});
+  Triangulation result;
+  if (!run.Succeeded() || !IsSparseModel(output)) {
+    result.fault = "the triangulation failed (" + run.Text() + ")";
   } else {
-    const SparseModel after = ReadSparseModel(output);
-    if (after.images.size() != before.images.size()) {
-      fault = "pictures were lost";
-    } else if (2 * after.points3D.size() < before.points3D.size()) {
-      fault = "points were lost";
-    } else {
-      WriteSparseModelBinary(model, after);
-    }
+    result.model = ReadSparseModel(output);
+    result.fault = Fault(before, *result.model);
+    if (!result.fault.empty()) result.model.reset();
   }
   fs::remove_all(output, error);
-  return fault;
+  return result;
 }
 
 }  // namespace colmap_seapoint

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <system_error>
+#include <utility>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/natural_order.h"
@@ -21,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr int kMaxRounds = 5;
 constexpr size_t kMinPicturesOfModel = 3;
-// Relaxed thresholds let pass models of a handful of chance points.
+// The relaxed thresholds of later rounds let models of a handful of chance points pass.
 constexpr size_t kMinPointsOfModel = 50;
 constexpr char kMinModelSize[] = "Mapper.min_model_size";
 constexpr char kRefineDistortion[] = "Mapper.ba_refine_extra_params";
@@ -44,8 +45,8 @@ void Rename(const fs::path& from, const fs::path& to) {
               "check the folder's permissions");
 }
 
-// "Registering image #3 (4)" (3.8), "Registering frame #3 (num_reg_frames=4)" (later): how many
-// pictures the present model has.
+// How many pictures the present model has, from a line as "Registering image #3 (4)" (COLMAP 3.8)
+// or "Registering frame #3 (num_reg_frames=4)" (later versions); nullopt for other lines.
 std::optional<int> NumRegistered(const std::string& line) {
   const size_t what = line.find("Registering ");
   if (what == std::string::npos) return std::nullopt;
@@ -74,7 +75,7 @@ bool IsBetter(const Trial& a, const Trial& b) {
   return a.worst_error < b.worst_error;
 }
 
-// What all rounds know of each other.
+// Runs the rounds one after the other; what one has found, the next does not look for again.
 class MapperRounds {
  public:
   MapperRounds(const ColmapProgram& colmap, const MapperJob& job)
@@ -130,7 +131,8 @@ class MapperRounds {
     return trial.pictures.size() < missing_.size() || !trial.lenses_are_sound;
   }
 
-  // COLMAP drops models of less than ten pictures, as chance brings some about. Better than none.
+  // COLMAP drops models of less than ten pictures, since chance brings some about. Where there is
+  // no other, they are better than none.
   void TakeSmallModels() {
     if (!colmap_.HasMapperOption(kMinModelSize)) return;
     MapperOptions options = job_.later_rounds;
@@ -165,25 +167,32 @@ class MapperRounds {
   }
 
   void AddModel(const fs::path& path, const std::string& trial_name, Trial* trial) const {
-    if (ReadSparseModel(path).points3D.size() < kMinPointsOfModel) return;
+    SparseModel model = ReadSparseModel(path);
+    if (model.points3D.size() < kMinPointsOfModel) return;
     std::string lens;
     if (job_.finds_lens) {
       const std::string log = "lens_" + trial_name + "_" + path.filename().string();
-      const AdjustmentJob job = {job_.database_path,
-                                 job_.image_path,
-                                 trial->command == kMapper ? trial->options : job_.first_round,
-                                 job_.log_folder / log,
-                                 trial->holds_distortion,
-                                 job_.adjusts_principal_point};
-      const LensAdjustment adjustment = AdjustLens(colmap_, job, path);
+      LensAdjustment adjustment = AdjustLens(colmap_, JobOf(*trial, log), path);
       lens = adjustment.outcome;
       trial->lenses_are_sound = trial->lenses_are_sound && adjustment.distortion_is_sound;
+      model = std::move(adjustment.model);
     }
-    const SparseModel model = ReadSparseModel(path);
     for (const PosedImage& image : model.images) trial->pictures.insert(image.name);
     trial->worst_error = std::max(trial->worst_error, ReprojectionError(model));
     trial->models.push_back(path);
     trial->lenses.push_back(lens);
+  }
+
+  AdjustmentJob JobOf(const Trial& trial, const std::string& log) const {
+    AdjustmentJob job;
+    job.database_path = job_.database_path;
+    job.image_path = job_.image_path;
+    // The triangulator knows the mapper's options, and none of the global mapper's.
+    job.options = trial.command == kMapper ? trial.options : job_.first_round;
+    job.log_path = job_.log_folder / log;
+    job.frees_distortion = trial.holds_distortion;
+    job.frees_principal_point = job_.adjusts_principal_point;
+    return job;
   }
 
   std::vector<std::string> Arguments(const Trial& trial) const {
@@ -202,8 +211,8 @@ class MapperRounds {
     return arguments;
   }
 
-  // Whether what the mapper left can be used. Having found no model is no failure here: COLMAP 3.8
-  // exits with 1 for that.
+  // Whether what the mapper left can be used. That it found no model is no failure here, though
+  // COLMAP 3.8 exits with 1 for it.
   bool CheckResult(const SubprocessResult& result, const std::string& last_line, bool found_model,
                    const fs::path& log, bool must_succeed) const {
     if (last_line.find("parse options") != std::string::npos ||
@@ -216,12 +225,13 @@ class MapperRounds {
       throw Error(colmap_.path.string(), finding,
                   "read its output in " + log.string() + " and run the same command again");
     }
-    // What was found before stands.
+    // What earlier rounds and trials have found stands.
     LogWarning(finding + "; its output is in " + log.string());
     return false;
   }
 
-  // True when there were any.
+  // Numbers the trial's models on, and strikes their pictures off the missing ones. True when there
+  // were any.
   bool TakeModels(const std::string& what, const Trial& trial) {
     const size_t num_before = missing_.size();
     for (size_t i = 0; i < trial.models.size(); ++i) {
@@ -233,7 +243,8 @@ class MapperRounds {
     LogInfo(what + ": " + std::to_string(num_before - missing_.size()) + " of " +
             std::to_string(num_before) + " pictures in " + std::to_string(trial.models.size()) +
             " models");
-    // Of a first round with two trials, the other one's too.
+    // The folders of all trials of the round: the one taken is empty now, the others are not
+    // wanted.
     for (const auto& entry : fs::directory_iterator(folder_)) {
       if (entry.path().filename().string().rfind("trial_", 0) == 0) RemoveAll(entry.path());
     }

@@ -1,4 +1,5 @@
-// The unmodified `colmap mapper` as a stage: database -> sparse models.
+// The unmodified `colmap mapper` as a stage: database -> sparse models (ours; the paper hands its
+// matches to COLMAP in the same way).
 #pragma once
 
 #include <filesystem>
@@ -18,26 +19,29 @@ struct MapperJob {
   std::filesystem::path image_path;
   std::filesystem::path output_path;  // holds 0/, 1/ ... afterwards
   std::filesystem::path log_folder;   // gets mapper_1.log, mapper_2.log ...
-  // Tried before the first round, which is left out when it registers all pictures.
+  // Where given, the global mapper is tried first; the first round proper is then left out when
+  // that registers all pictures.
   std::optional<MapperOptions> global_round;
   MapperOptions first_round;
   MapperOptions later_rounds;
-  // The lens is ours to find: held while models grow, and adjusted afterwards (adjust_lens.h).
+  // True: the lens is ours to find, so that it is held while models grow, and adjusted afterwards
+  // (adjust_lens.h). False: the user decides what the mapper refines.
   bool finds_lens = true;
   bool adjusts_principal_point = true;
-  std::vector<std::string> pictures;  // that have a verified pair
+  std::vector<std::string> pictures;  // those that have a verified pair
 };
 
-// Maps all pictures; then, in further rounds, those that are in no model yet, as long as that finds
-// one: the models of all rounds are numbered on. When the first round leaves pictures over, or
-// a lens that cannot be adjusted soundly, it is tried with a free distortion too, and the better
-// trial counts: more pictures, then the smaller error; so it is with the global mapper. Models of
-// too few points are not taken. Works in <output_path>.tmp (removed first when an earlier run left
-// it), which gets its name when all is done. Throws Error when the mapper fails or no round finds a
-// model, UsageError when it refuses an option's value.
+// Maps all pictures; then, in further rounds, those that are in no model yet, as long as a round
+// finds one: the models of all rounds are numbered on. When the first round leaves pictures over,
+// or a lens that cannot be adjusted soundly, it is tried with a free distortion too, and the better
+// trial counts: the one with more pictures, then the one with the smaller error. The global
+// mapper's trial is compared in the same way. Models of fewer than 50 points are not taken. Works
+// in <output_path>.tmp (removed first when an earlier run left it), which gets its name when all is
+// done. Throws Error when the mapper fails or no round finds a model, UsageError when it refuses an
+// option's value.
 void RunMapper(const ColmapProgram& colmap, const MapperJob& job);
 
-// Model folders below `sparse`, by number.
+// Model folders below `sparse`, in natural order; empty when there is no such folder.
 std::vector<std::filesystem::path> ListModels(const std::filesystem::path& sparse);
 
 }  // namespace colmap_seapoint

@@ -15,6 +15,7 @@ namespace {
 
 constexpr size_t kStrongPair = 30;  // verified matches
 
+// Ids of the pictures with a strong pair.
 std::set<uint32_t> StronglyTied(const ColmapDatabase& database) {
   std::set<uint32_t> tied;
   for (const ImagePair& pair : ReadVerifiedPairs(database)) {

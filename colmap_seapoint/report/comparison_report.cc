@@ -5,44 +5,15 @@
 #include <nlohmann/json.hpp>
 
 #include "colmap_seapoint/base/version.h"
+#include "colmap_seapoint/compare/comparison_scores.h"
 
 namespace colmap_seapoint {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
+// JSON has no infinity and no NaN.
 Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-double Share(uint64_t part, uint64_t whole) {
-  return static_cast<double>(part) / static_cast<double>(whole);
-}
-
-double HarmonicMean(double a, double b) { return a + b > 0 ? 2 * a * b / (a + b) : 0; }
-
-struct Scores {
-  double accuracy = 0, completeness = 0, f_score = 0;
-
-  Scores(double of_input, double of_reference)
-      : accuracy(of_input),
-        completeness(of_reference),
-        f_score(HarmonicMean(of_input, of_reference)) {}
-};
-
-Scores PointScores(const CloudComparison& c, size_t k) {
-  return {Share(c.input.at[k].num_within, c.input.num_points),
-          Share(c.reference.at[k].num_within, c.reference.num_points)};
-}
-
-Scores Eth3dScores(const CloudComparison& c, size_t k) {
-  return {c.input.at[k].voxel_share, c.reference.at[k].voxel_share};
-}
-
-Scores TanksScores(const CloudComparison& c, size_t k) {
-  const DistanceShares& input = c.input.at[k];
-  const DistanceShares& reference = c.reference.at[k];
-  return {Share(input.num_reduced_within, input.num_reduced),
-          Share(reference.num_reduced_within, reference.num_reduced)};
-}
 
 Json CloudJson(const std::string& path, const OneWay& way, const ComparisonReport& report) {
   Json json;
@@ -69,7 +40,7 @@ Json DistanceJson(const OneWay& way) {
 Json PointsJson(const CloudComparison& c) {
   Json json = {{"definition", kPointsDefinition}, {"at", Json::array()}};
   for (size_t k = 0; k < c.distances.size(); ++k) {
-    const Scores scores = PointScores(c, k);
+    const ComparisonScores scores = PointScores(c, k);
     json["at"].push_back({{"distance", c.distances[k]},
                           {"accuracy", scores.accuracy},
                           {"completeness", scores.completeness},
@@ -87,7 +58,7 @@ Json Eth3dJson(const CloudComparison& c) {
                {"reference_voxels", c.reference.num_voxels},
                {"at", Json::array()}};
   for (size_t k = 0; k < c.distances.size(); ++k) {
-    const Scores scores = Eth3dScores(c, k);
+    const ComparisonScores scores = Eth3dScores(c, k);
     json["at"].push_back({{"distance", c.distances[k]},
                           {"accuracy", scores.accuracy},
                           {"completeness", scores.completeness},
@@ -99,7 +70,7 @@ Json Eth3dJson(const CloudComparison& c) {
 Json TanksJson(const CloudComparison& c) {
   Json json = {{"definition", kTanksAndTemplesDefinition}, {"at", Json::array()}};
   for (size_t k = 0; k < c.distances.size(); ++k) {
-    const Scores scores = TanksScores(c, k);
+    const ComparisonScores scores = TanksScores(c, k);
     json["at"].push_back({{"distance", c.distances[k]},
                           {"voxel_size", 0.5 * c.distances[k]},
                           {"precision", scores.accuracy},
@@ -125,7 +96,7 @@ Json HolesJson(const CloudComparison& c) {
   return json;
 }
 
-// Rows of the table.
+// One row of the table, by printf's rules.
 template <typename... Values>
 std::string Line(const char* format, Values... values) {
   char text[256];
@@ -134,10 +105,10 @@ std::string Line(const char* format, Values... values) {
 }
 
 std::string ScoreRows(const char* name, const CloudComparison& c,
-                      Scores (*scores_at)(const CloudComparison&, size_t)) {
+                      ComparisonScores (*scores_at)(const CloudComparison&, size_t)) {
   std::string rows;
   for (size_t k = 0; k < c.distances.size(); ++k) {
-    const Scores scores = scores_at(c, k);
+    const ComparisonScores scores = scores_at(c, k);
     rows += Line("%-18s %12.6g %10.4f %13.4f %9.4f\n", k == 0 ? name : "", c.distances[k],
                  scores.accuracy, scores.completeness, scores.f_score);
   }

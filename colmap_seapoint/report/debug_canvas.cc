@@ -10,56 +10,57 @@ namespace {
 
 constexpr int kTitleHeight = 30;
 constexpr int kGap = 10;
+constexpr uint8_t kDarkGray = 40;
 
 cv::Scalar ToScalar(const Rgb& color) { return cv::Scalar(color[0], color[1], color[2]); }
 
-double ScaleOf(int width) { return std::min(1.0, static_cast<double>(Canvas::kMaxWidth) / width); }
+int Scaled(int length, double scale) {
+  return std::max(1, static_cast<int>(std::lround(length * scale)));
+}
+
+Image<uint8_t> ToImage(const cv::Mat& rgb) {
+  Image<uint8_t> image(rgb.cols, rgb.rows, 3);
+  for (int y = 0; y < rgb.rows; ++y) std::memcpy(image.Row(y), rgb.ptr(y), image.Stride());
+  return image;
+}
 
 }  // namespace
 
-Canvas::Canvas(int picture_width, int picture_height) : scale_(ScaleOf(picture_width)) {
-  rgb_ =
-      cv::Mat::zeros(std::max(1, static_cast<int>(std::lround(picture_height * scale_))),
-                     std::max(1, static_cast<int>(std::lround(picture_width * scale_))), CV_8UC3);
+CanvasFrame::CanvasFrame(int picture_width, int picture_height)
+    : scale(std::min(1.0, static_cast<double>(kMaxWidth) / picture_width)),
+      size(Scaled(picture_width, scale), Scaled(picture_height, scale)) {}
+
+cv::Point CanvasFrame::Place(const Eigen::Vector2d& pixel) const {
+  return {static_cast<int>(std::floor(pixel.x() * scale)),
+          static_cast<int>(std::floor(pixel.y() * scale))};
 }
 
-Canvas::Canvas(const Picture& picture, double brightness)
-    : Canvas(picture.luma.width, picture.luma.height) {
-  ColorImage color = ColorOf(picture);
-  const cv::Mat whole(color.height, color.width, CV_8UC3, color.data.data());
-  cv::resize(whole, rgb_, rgb_.size(), 0, 0, cv::INTER_AREA);
-  rgb_.convertTo(rgb_, -1, brightness);
-}
-
-cv::Point Canvas::Place(const Eigen::Vector2d& pixel) const {
-  return {static_cast<int>(std::floor(pixel.x() * scale_)),
-          static_cast<int>(std::floor(pixel.y() * scale_))};
-}
-
-cv::Mat Canvas::Discs(const std::vector<Eigen::Vector2d>& centers, double radius) const {
-  cv::Mat mask = cv::Mat::zeros(rgb_.size(), CV_8UC1);
-  const int canvas_radius = std::max(1, static_cast<int>(std::lround(radius * scale_)));
+cv::Mat DiscMask(const CanvasFrame& frame, const std::vector<Eigen::Vector2d>& centers,
+                 double radius) {
+  cv::Mat mask = cv::Mat::zeros(frame.size, CV_8UC1);
+  const int canvas_radius = std::max(1, static_cast<int>(std::lround(radius * frame.scale)));
   for (const Eigen::Vector2d& center : centers) {
-    cv::circle(mask, Place(center), canvas_radius, cv::Scalar(255), cv::FILLED);
+    cv::circle(mask, frame.Place(center), canvas_radius, cv::Scalar(255), cv::FILLED);
   }
   return mask;
 }
 
-cv::Mat Canvas::Hull(const std::vector<Eigen::Vector2d>& points) const {
-  cv::Mat mask = cv::Mat::zeros(rgb_.size(), CV_8UC1);
+cv::Mat HullMask(const CanvasFrame& frame, const std::vector<Eigen::Vector2d>& points) {
+  cv::Mat mask = cv::Mat::zeros(frame.size, CV_8UC1);
   if (points.empty()) return mask;
   std::vector<cv::Point> places, hull;
-  for (const Eigen::Vector2d& point : points) places.push_back(Place(point));
+  for (const Eigen::Vector2d& point : points) places.push_back(frame.Place(point));
   cv::convexHull(places, hull);
   cv::fillConvexPoly(mask, hull, cv::Scalar(255));
   return mask;
 }
 
-cv::Mat Canvas::Cells(const CellGrid& grid, const std::vector<uint8_t>& marked) const {
-  cv::Mat mask = cv::Mat::zeros(rgb_.size(), CV_8UC1);
+cv::Mat CellMask(const CanvasFrame& frame, const CellGrid& grid,
+                 const std::vector<uint8_t>& marked) {
+  cv::Mat mask = cv::Mat::zeros(frame.size, CV_8UC1);
   for (int y = 0; y < mask.rows; ++y) {
     for (int x = 0; x < mask.cols; ++x) {
-      if (marked[grid.IndexOf((x + 0.5) / scale_, (y + 0.5) / scale_)] != 0) {
+      if (marked[grid.IndexOf((x + 0.5) / frame.scale, (y + 0.5) / frame.scale)] != 0) {
         mask.at<uint8_t>(y, x) = 255;
       }
     }
@@ -67,10 +68,21 @@ cv::Mat Canvas::Cells(const CellGrid& grid, const std::vector<uint8_t>& marked) 
   return mask;
 }
 
-bool Canvas::Holds(const cv::Mat& mask, const Eigen::Vector2f& pixel) const {
-  const cv::Point place = Place(pixel.cast<double>());
+bool Holds(const CanvasFrame& frame, const cv::Mat& mask, const Eigen::Vector2f& pixel) {
+  const cv::Point place = frame.Place(pixel.cast<double>());
   return place.x >= 0 && place.y >= 0 && place.x < mask.cols && place.y < mask.rows &&
          mask.at<uint8_t>(place) != 0;
+}
+
+Canvas::Canvas(int picture_width, int picture_height)
+    : frame_(picture_width, picture_height), rgb_(cv::Mat::zeros(frame_.size, CV_8UC3)) {}
+
+Canvas::Canvas(const Picture& picture, double brightness)
+    : Canvas(picture.luma.width, picture.luma.height) {
+  ColorImage color = ColorOf(picture);
+  const cv::Mat whole(color.height, color.width, CV_8UC3, color.data.data());
+  cv::resize(whole, rgb_, rgb_.size(), 0, 0, cv::INTER_AREA);
+  rgb_.convertTo(rgb_, -1, brightness);
 }
 
 void Canvas::Tint(const cv::Mat& mask, const Rgb& color, double strength) {
@@ -92,15 +104,15 @@ void Canvas::Outline(const cv::Mat& mask, const Rgb& color) {
 }
 
 void Canvas::Circles(const std::vector<Eigen::Vector2d>& centers, double radius, const Rgb& color) {
-  const int canvas_radius = std::max(2, static_cast<int>(std::lround(radius * scale_)));
+  const int canvas_radius = std::max(2, static_cast<int>(std::lround(radius * frame_.scale)));
   for (const Eigen::Vector2d& center : centers) {
-    cv::circle(rgb_, Place(center), canvas_radius, ToScalar(color), 1, cv::LINE_AA);
+    cv::circle(rgb_, frame_.Place(center), canvas_radius, ToScalar(color), 1, cv::LINE_AA);
   }
 }
 
 void Canvas::Dots(const std::vector<Eigen::Vector2d>& centers, const Rgb& color) {
   for (const Eigen::Vector2d& center : centers) {
-    cv::circle(rgb_, Place(center), 1, ToScalar(color), cv::FILLED);
+    cv::circle(rgb_, frame_.Place(center), 1, ToScalar(color), cv::FILLED);
   }
 }
 
@@ -111,33 +123,30 @@ void Canvas::Disparities(const std::vector<PlacedDisparity>& samples, double siz
   for (const PlacedDisparity& sample : samples) {
     const float nearness = std::clamp((sample.disparity - range[0]) / span, 0.0f, 1.0f);
     const Eigen::Vector2d pixel = sample.pixel.cast<double>();
-    const cv::Point low = Place(pixel - Eigen::Vector2d(half, half));
-    const cv::Point high = Place(pixel + Eigen::Vector2d(half, half));
+    const cv::Point low = frame_.Place(pixel - Eigen::Vector2d(half, half));
+    const cv::Point high = frame_.Place(pixel + Eigen::Vector2d(half, half));
     cv::rectangle(rgb_, low, high, ToScalar(color) * (0.3 + 0.7 * nearness), cv::FILLED);
   }
 }
 
-void Canvas::Title(const std::string& text) {
-  cv::copyMakeBorder(rgb_, rgb_, kTitleHeight, 0, 0, 0, cv::BORDER_CONSTANT,
-                     cv::Scalar(40, 40, 40));
-  cv::putText(rgb_, text, cv::Point(8, kTitleHeight - 10), cv::FONT_HERSHEY_SIMPLEX, 0.5,
+Image<uint8_t> Canvas::WithTitle(const std::string& text) const {
+  cv::Mat titled;
+  cv::copyMakeBorder(rgb_, titled, kTitleHeight, 0, 0, 0, cv::BORDER_CONSTANT,
+                     cv::Scalar::all(kDarkGray));
+  cv::putText(titled, text, cv::Point(8, kTitleHeight - 10), cv::FONT_HERSHEY_SIMPLEX, 0.5,
               cv::Scalar(255, 255, 255), 1, cv::LINE_AA);
+  return ToImage(titled);
 }
 
-Canvas Canvas::Beside(const Canvas& right) const {
-  Canvas both;
-  both.scale_ = scale_;
-  const int height = std::max(rgb_.rows, right.rgb_.rows);
-  both.rgb_ = cv::Mat(height, rgb_.cols + kGap + right.rgb_.cols, CV_8UC3, cv::Scalar::all(40));
-  rgb_.copyTo(both.rgb_(cv::Rect(0, 0, rgb_.cols, rgb_.rows)));
-  right.rgb_.copyTo(both.rgb_(cv::Rect(rgb_.cols + kGap, 0, right.rgb_.cols, right.rgb_.rows)));
+Image<uint8_t> SideBySide(const Image<uint8_t>& left, const Image<uint8_t>& right) {
+  Image<uint8_t> both(left.width + kGap + right.width, std::max(left.height, right.height), 3,
+                      kDarkGray);
+  for (int y = 0; y < left.height; ++y) std::memcpy(both.Row(y), left.Row(y), left.Stride());
+  const size_t offset = static_cast<size_t>(left.width + kGap) * 3;
+  for (int y = 0; y < right.height; ++y) {
+    std::memcpy(both.Row(y) + offset, right.Row(y), right.Stride());
+  }
   return both;
-}
-
-Image<uint8_t> Canvas::ToImage() const {
-  Image<uint8_t> image(rgb_.cols, rgb_.rows, 3);
-  for (int y = 0; y < rgb_.rows; ++y) std::memcpy(image.Row(y), rgb_.ptr(y), image.Stride());
-  return image;
 }
 
 }  // namespace colmap_seapoint

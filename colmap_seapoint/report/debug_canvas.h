@@ -1,4 +1,4 @@
-// A picture reduced to screen size and what is drawn on it. Positions are given in pixels of the
+// A picture reduced to screen size, and what is drawn on it. Positions are given in pixels of the
 // full picture. For debug_figures.cc only.
 #pragma once
 
@@ -20,23 +20,38 @@ struct PlacedDisparity {
   float disparity;
 };
 
-class Canvas {
- public:
+// How a picture is reduced: to kMaxWidth pixels where it is wider.
+struct CanvasFrame {
   static constexpr int kMaxWidth = 1000;
 
-  Canvas() = default;
+  CanvasFrame(int picture_width, int picture_height);
+  // The canvas pixel that shows a pixel of the picture.
+  cv::Point Place(const Eigen::Vector2d& pixel) const;
+
+  double scale;  // canvas pixels a picture pixel
+  cv::Size size;
+};
+
+// Masks, as large as the canvas: 255 inside, 0 outside.
+// Within `radius` of a point.
+cv::Mat DiscMask(const CanvasFrame& frame, const std::vector<Eigen::Vector2d>& centers,
+                 double radius);
+// Inside the points' convex hull.
+cv::Mat HullMask(const CanvasFrame& frame, const std::vector<Eigen::Vector2d>& points);
+// In the marked cells.
+cv::Mat CellMask(const CanvasFrame& frame, const CellGrid& grid,
+                 const std::vector<uint8_t>& marked);
+// Whether the mask is 255 at a pixel of the picture.
+bool Holds(const CanvasFrame& frame, const cv::Mat& mask, const Eigen::Vector2f& pixel);
+
+class Canvas {
+ public:
   // Black, for a picture of this size.
   Canvas(int picture_width, int picture_height);
   // The picture, its brightness multiplied.
   Canvas(const Picture& picture, double brightness);
 
-  bool Empty() const { return rgb_.empty(); }
-  // 255 within `radius` of a point / inside the points' convex hull, as large as the canvas.
-  cv::Mat Discs(const std::vector<Eigen::Vector2d>& centers, double radius) const;
-  cv::Mat Hull(const std::vector<Eigen::Vector2d>& points) const;
-  // 255 in the marked cells.
-  cv::Mat Cells(const CellGrid& grid, const std::vector<uint8_t>& marked) const;
-  bool Holds(const cv::Mat& mask, const Eigen::Vector2f& pixel) const;
+  const CanvasFrame& Frame() const { return frame_; }
 
   void Tint(const cv::Mat& mask, const Rgb& color, double strength);
   void Outline(const cv::Mat& mask, const Rgb& color);
@@ -46,17 +61,15 @@ class Canvas {
   void Disparities(const std::vector<PlacedDisparity>& samples, double size, const Rgb& color,
                    const Eigen::Vector2f& range);
 
-  // A line of text above everything.
-  void Title(const std::string& text);
-  // Beside this one, a gap between them.
-  Canvas Beside(const Canvas& right) const;
-  Image<uint8_t> ToImage() const;
+  // What was drawn, with a line of text above it.
+  Image<uint8_t> WithTitle(const std::string& text) const;
 
  private:
-  cv::Point Place(const Eigen::Vector2d& pixel) const;
-
+  CanvasFrame frame_;
   cv::Mat rgb_;
-  double scale_ = 1;  // canvas pixels per picture pixel
 };
+
+// The two side by side on dark grey, a gap between them.
+Image<uint8_t> SideBySide(const Image<uint8_t>& left, const Image<uint8_t>& right);
 
 }  // namespace colmap_seapoint

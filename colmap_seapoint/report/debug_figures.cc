@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "colmap_seapoint/io/image/image_file.h"
+#include "colmap_seapoint/report/debug_canvas.h"
 #include "densify/match/rectification.h"
 
 namespace colmap_seapoint {
@@ -22,7 +23,7 @@ Pixels PixelsOf(const std::vector<SeaPoint>& points) {
   return pixels;
 }
 
-// Ends of the interpair matches in either picture, those of REA points apart.
+// The ends of the interpair matches in either picture; those of REA points stand apart.
 struct Interpair {
   Pixels processed0, processed1, revived0, revived1;
 
@@ -42,6 +43,7 @@ struct Interpair {
   }
 };
 
+// The samples of a disparity at their places in picture 1.
 std::vector<PlacedDisparity> Place(const PairDebug& pair, const PartialDisparity& disparity) {
   std::vector<PlacedDisparity> placed;
   const auto geometry = MakePairGeometry(pair.view1.camera, pair.view1.cam_from_world,
@@ -65,7 +67,7 @@ std::vector<PlacedDisparity> Place(const PairDebug& pair, const PartialDisparity
   return placed;
 }
 
-// What all but the outermost fiftieths span.
+// The range of the disparities without the smallest and the largest fiftieth of them.
 Eigen::Vector2f RangeOf(std::vector<PlacedDisparity> samples) {
   if (samples.empty()) return {0, 1};
   const auto less = [](const PlacedDisparity& a, const PlacedDisparity& b) {
@@ -109,10 +111,10 @@ const std::string& DebugFigures::NameOf(int image_idx) const {
   return model_.images.at(static_cast<size_t>(image_idx)).name;
 }
 
-void DebugFigures::WriteFigure(const std::string& name, const Canvas& canvas) const {
+void DebugFigures::WriteFigure(const std::string& name, const Image<uint8_t>& figure) const {
   char number[32];
   std::snprintf(number, sizeof(number), "pair_%04d_", num_pairs_);
-  WriteImage(folder_ / (number + name + ".png"), canvas.ToImage());
+  WriteImage(folder_ / (number + name + ".png"), figure);
 }
 
 void DebugFigures::WriteInfluenceAreas(const PairDebug& pair) const {
@@ -122,10 +124,11 @@ void DebugFigures::WriteInfluenceAreas(const PairDebug& pair) const {
   left.Circles(ends.revived0, pair.influence_radius0, kOrange);
   right.Circles(ends.processed1, pair.influence_radius1, kBlue);
   right.Circles(ends.revived1, pair.influence_radius1, kOrange);
-  left.Title("V: " + NameOf(pair.previous_image_idx) + ". " +
-             std::to_string(pair.interpair.size()) + " interpair SeaPoints; orange: REA");
-  right.Title("V + 2: " + NameOf(pair.report.image_idx1));
-  WriteFigure("fig10_influence_areas", left.Beside(right));
+  const std::string counts = std::to_string(pair.interpair.size()) + " interpair SeaPoints";
+  WriteFigure("fig10_influence_areas",
+              SideBySide(left.WithTitle("V: " + NameOf(pair.previous_image_idx) + ". " + counts +
+                                        "; orange: REA"),
+                         right.WithTitle("V + 2: " + NameOf(pair.report.image_idx1))));
 }
 
 void DebugFigures::WriteMasks(const PairDebug& pair) const {
@@ -133,20 +136,20 @@ void DebugFigures::WriteMasks(const PairDebug& pair) const {
   if (pair.mask.grid.Size() > 0) {
     const double rate = pair.mask.OverlapRate();
     Canvas canvas = BlackCanvas(pair);
-    canvas.Tint(canvas.Cells(pair.mask.grid, pair.mask.marked), white, 1);
-    canvas.Title("mask on V + 2 (" + NameOf(pair.report.image_idx1) + "): overlap rate " +
-                 Percent(rate));
-    WriteFigure(WithPercent("fig11_mask_overlap", rate), canvas);
+    canvas.Tint(CellMask(canvas.Frame(), pair.mask.grid, pair.mask.marked), white, 1);
+    WriteFigure(WithPercent("fig11_mask_overlap", rate),
+                canvas.WithTitle("mask on V + 2 (" + NameOf(pair.report.image_idx1) +
+                                 "): overlap rate " + Percent(rate)));
   }
   if (pair.covered_range.empty()) return;
   std::vector<uint8_t> covered;
   for (const float range : pair.covered_range) covered.push_back(range > 0 ? 1 : 0);
   const double rate = pair.report.overlap;
   Canvas canvas = BlackCanvas(pair);
-  canvas.Tint(canvas.Cells(pair.cells, covered), white, 1);
-  canvas.Title(NameOf(pair.report.image_idx1) +
-               ": reconstructed before, by any pair: " + Percent(rate));
-  WriteFigure(WithPercent("fig11_reconstructed", rate), canvas);
+  canvas.Tint(CellMask(canvas.Frame(), pair.cells, covered), white, 1);
+  WriteFigure(WithPercent("fig11_reconstructed", rate),
+              canvas.WithTitle(NameOf(pair.report.image_idx1) +
+                               ": reconstructed before, by any pair: " + Percent(rate)));
 }
 
 void DebugFigures::WriteDisparities(const PairDebug& pair) {
@@ -156,16 +159,17 @@ void DebugFigures::WriteDisparities(const PairDebug& pair) {
   Canvas right = BlackCanvas(pair);
   right.Disparities(normal, SizeOf(pair.normal.partial), kRed, range);
   right.Disparities(partial, SizeOf(pair.partial->partial), kGreen, range);
-  right.Title(NameOf(pair.report.image_idx1) + ", " + NameOf(pair.report.image_idx2) + ": " +
-              std::to_string(partial.size()) + " samples (green); " +
-              std::to_string(normal.size()) + " by normal propagation (red and green)");
+  const Image<uint8_t> figure =
+      right.WithTitle(NameOf(pair.report.image_idx1) + ", " + NameOf(pair.report.image_idx2) +
+                      ": " + std::to_string(partial.size()) + " samples (green); " +
+                      std::to_string(normal.size()) + " by normal propagation (red and green)");
   const bool has_previous = pair.report.pass == "sequence" && !previous_disparity_.Empty();
-  WriteFigure("fig13_disparity", has_previous ? previous_disparity_.Beside(right) : right);
+  WriteFigure("fig13_disparity", has_previous ? SideBySide(previous_disparity_, figure) : figure);
 
-  previous_disparity_ = BlackCanvas(pair);
-  previous_disparity_.Disparities(partial, SizeOf(pair.partial->partial), kGray, range);
-  previous_disparity_.Dots(PixelsOf(*pair.points1), kBlue);
-  previous_disparity_.Title("the pair before: its partial disparity and SeaPoints");
+  Canvas previous = BlackCanvas(pair);
+  previous.Disparities(partial, SizeOf(pair.partial->partial), kGray, range);
+  previous.Dots(PixelsOf(*pair.points1), kBlue);
+  previous_disparity_ = previous.WithTitle("the pair before: its partial disparity and SeaPoints");
 }
 
 void DebugFigures::WriteOcclusions(const PairDebug& pair) const {
@@ -174,19 +178,20 @@ void DebugFigures::WriteOcclusions(const PairDebug& pair) const {
   left.Disparities(partial, SizeOf(pair.partial->partial), kGray, RangeOf(partial));
   left.Circles(pair.failed_seeds, 0.5 * pair.influence_radius1, kRed);
   left.Dots(pair.failed_seeds, kRed);
-  left.Title("intrapair: " + std::to_string(pair.failed_seeds.size()) +
-             " seeds without disparity around them (red)");
-  if (pair.previous_picture == nullptr) return WriteFigure("fig15_occlusions", left);
+  const Image<uint8_t> figure =
+      left.WithTitle("intrapair: " + std::to_string(pair.failed_seeds.size()) +
+                     " seeds without disparity around them (red)");
+  if (pair.previous_picture == nullptr) return WriteFigure("fig15_occlusions", figure);
 
   const Interpair ends(pair);
   Canvas right(*pair.picture1, 0.8);
-  const cv::Mat unmatched =
-      right.Hull(ends.All1()) & ~right.Discs(ends.All1(), pair.influence_radius1);
+  const cv::Mat unmatched = HullMask(right.Frame(), ends.All1()) &
+                            ~DiscMask(right.Frame(), ends.All1(), pair.influence_radius1);
   right.Circles(ends.All1(), pair.influence_radius1, kBlue);
   right.Tint(unmatched, kRed, 0.35);
   right.Outline(unmatched, kRed);
-  right.Title("interpair: inside the overlap without matched SeaPoints (red)");
-  WriteFigure("fig15_occlusions", left.Beside(right));
+  const std::string title = "interpair: inside the overlap without matched SeaPoints (red)";
+  WriteFigure("fig15_occlusions", SideBySide(figure, right.WithTitle(title)));
 }
 
 void DebugFigures::WriteRevived(const PairDebug& pair) const {
@@ -195,27 +200,29 @@ void DebugFigures::WriteRevived(const PairDebug& pair) const {
   Canvas left = BlackCanvas(pair);
   // The mask is made of cells: a rim of their size is not drawn as hidden by the overlap.
   const double radius = std::max(0.0, pair.influence_radius1 - pair.cells.cell);
-  const cv::Mat overlap = left.Hull(ends.All1()) | left.Discs(ends.All1(), radius);
+  const CanvasFrame& frame = left.Frame();
+  const cv::Mat overlap = HullMask(frame, ends.All1()) | DiscMask(frame, ends.All1(), radius);
   const cv::Mat around_revived =
-      left.Discs(ends.revived1, pair.influence_radius1 + pair.cells.cell);
+      DiscMask(frame, ends.revived1, pair.influence_radius1 + pair.cells.cell);
   std::vector<PlacedDisparity> outside, revived, uncovered;
   for (const PlacedDisparity& sample : partial) {
-    if (!left.Holds(overlap, sample.pixel)) {
+    if (!Holds(frame, overlap, sample.pixel)) {
       outside.push_back(sample);
     } else {
-      (left.Holds(around_revived, sample.pixel) ? revived : uncovered).push_back(sample);
+      (Holds(frame, around_revived, sample.pixel) ? revived : uncovered).push_back(sample);
     }
   }
   const Eigen::Vector2f range = RangeOf(partial);
   const double size = SizeOf(pair.partial->partial);
   left.Disparities(outside, size, kGray, range);
-  left.Title("without all of the overlap");
   Canvas right = BlackCanvas(pair);
   right.Disparities(outside, size, kGray, range);
   right.Disparities(revived, size, kYellow, range);
   right.Disparities(uncovered, size, kCyan, range);
-  right.Title("with what the overlap hid: near REA SeaPoints (yellow), unmatched (cyan)");
-  WriteFigure("fig17_occlusions_handled", left.Beside(right));
+  const std::string title =
+      "with what the overlap hid: near REA SeaPoints (yellow), unmatched (cyan)";
+  WriteFigure("fig17_occlusions_handled",
+              SideBySide(left.WithTitle("without all of the overlap"), right.WithTitle(title)));
 }
 
 }  // namespace colmap_seapoint

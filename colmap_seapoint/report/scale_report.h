@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "colmap_seapoint/georeference/estimate_similarity.h"
 #include "colmap_seapoint/georeference/scale_measurements.h"
 
 namespace colmap_seapoint {
