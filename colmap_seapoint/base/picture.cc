@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "colmap_seapoint/base/vector_clones.h"
+#include "colmap_seapoint/base/picture_kernels.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -15,26 +15,6 @@ constexpr int Fixed(double value) {
 }
 
 uint8_t Clamped(int value) { return static_cast<uint8_t>(std::clamp(value, 0, 255)); }
-
-SEAPOINT_VECTOR_CLONES
-void ToLuma(const uint8_t* rgb, size_t count, uint8_t* luma) {
-  for (size_t i = 0; i < count; ++i) {
-    luma[i] = static_cast<uint8_t>(
-        (9798 * rgb[3 * i] + 19235 * rgb[3 * i + 1] + 3735 * rgb[3 * i + 2] + (1 << 14)) >> 15);
-  }
-}
-
-SEAPOINT_VECTOR_CLONES
-void ToChroma(const uint8_t* rgb, size_t count, uint8_t* cb, uint8_t* cr) {
-  constexpr int kCenter = (128 << kBits) + kHalf - 1;  // - 1: 255.5 must not become 256
-  for (size_t i = 0; i < count; ++i) {
-    const int r = rgb[3 * i], g = rgb[3 * i + 1], b = rgb[3 * i + 2];
-    cb[i] = static_cast<uint8_t>(
-        (Fixed(-0.168735892) * r + Fixed(-0.331264108) * g + Fixed(0.5) * b + kCenter) >> kBits);
-    cr[i] = static_cast<uint8_t>(
-        (Fixed(0.5) * r + Fixed(-0.418687589) * g + Fixed(-0.081312411) * b + kCenter) >> kBits);
-  }
-}
 
 // The two chroma samples around a pixel's centre along one axis, and the second one's weight in
 // 2^(shift + 1)ths. Beyond the outermost centres the outermost sample counts alone.
@@ -63,17 +43,17 @@ int Interpolate(const GrayImage& chroma, const Between& x, const Between& y, int
 
 GrayImage LumaOf(const ColorImage& color) {
   GrayImage luma(color.width, color.height);
-  ToLuma(color.data.data(), luma.data.size(), luma.data.data());
+  picture::ToLuma(color.data.data(), luma.data.size(), luma.data.data());
   return luma;
 }
 
 Picture PictureOf(const ColorImage& color) {
-  Picture picture;
-  picture.luma = LumaOf(color);
-  picture.cb = picture.cr = GrayImage(color.width, color.height);
-  ToChroma(color.data.data(), picture.cb.data.size(), picture.cb.data.data(),
-           picture.cr.data.data());
-  return picture;
+  Picture result;
+  result.luma = LumaOf(color);
+  result.cb = result.cr = GrayImage(color.width, color.height);
+  picture::ToChroma(color.data.data(), result.cb.data.size(), result.cb.data.data(),
+                    result.cr.data.data());
+  return result;
 }
 
 std::array<uint8_t, 3> ColorAt(const Picture& picture, int x, int y) {

@@ -49,47 +49,28 @@ int ExactDistance(const Descriptor& a, const Descriptor& b) {
   return distance;
 }
 
-// Both directions at once, and what a distance must be at most to matter, clamped to a byte.
-class Record {
+// The record, by index. Limits: what a distance must be at most to matter, clamped to a byte.
+class Search {
  public:
-  Record(const std::vector<Descriptor>& descriptors1, const std::vector<Descriptor>& descriptors2,
-         bool with_second, std::vector<Nearest>* nearest1, std::vector<Nearest>* nearest2)
+  Search(const std::vector<Descriptor>& descriptors1, const std::vector<Descriptor>& descriptors2,
+         int cap, bool with_second)
       : descriptors1_(descriptors1),
         descriptors2_(descriptors2),
-        with_second_(with_second),
-        nearest1_(*nearest1),
-        nearest2_(*nearest2) {}
+        record_(descriptors1.size(), descriptors2.size(), cap, with_second) {}
 
-  uint8_t Limit1(size_t i) const { return Limit(nearest1_[i]); }
-  uint8_t Limit2(size_t j) const { return Limit(nearest2_[j]); }
-
+  uint8_t Limit1(size_t i) const { return Limit(record_.Bound1(i)); }
+  uint8_t Limit2(size_t j) const { return Limit(record_.Bound2(j)); }
   void Enter(size_t i, size_t j) {
-    const int distance = ExactDistance(descriptors1_[i], descriptors2_[j]);
-    Update(distance, static_cast<uint32_t>(j), &nearest1_[i]);
-    Update(distance, static_cast<uint32_t>(i), &nearest2_[j]);
+    record_.Enter(ExactDistance(descriptors1_[i], descriptors2_[j]), i, j);
   }
+  NearestNeighbors Take() { return record_.Take(); }
 
  private:
-  uint8_t Limit(const Nearest& nearest) const {
-    const int bound = with_second_ ? nearest.second_distance : nearest.distance;
-    return static_cast<uint8_t>(std::clamp(bound - 1, 0, 255));
-  }
-
-  static void Update(int distance, uint32_t idx, Nearest* nearest) {
-    if (distance < nearest->distance) {
-      nearest->second_distance = nearest->distance;
-      nearest->distance = distance;
-      nearest->idx = idx;
-    } else if (distance < nearest->second_distance) {
-      nearest->second_distance = distance;
-    }
-  }
+  static uint8_t Limit(int bound) { return static_cast<uint8_t>(std::clamp(bound - 1, 0, 255)); }
 
   const std::vector<Descriptor>& descriptors1_;
   const std::vector<Descriptor>& descriptors2_;
-  const bool with_second_;
-  std::vector<Nearest>& nearest1_;
-  std::vector<Nearest>& nearest2_;
+  NearestRecord record_;
 };
 
 }  // namespace
@@ -106,14 +87,10 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR
 
-// For machines without vector code, and what the vector code must equal.
-void FindNearest(const std::vector<Descriptor>& descriptors1,
-                 const std::vector<Descriptor>& descriptors2, bool with_second,
-                 std::vector<Nearest>* nearest1, std::vector<Nearest>* nearest2) {
-  Record record(descriptors1, descriptors2, with_second, nearest1, nearest2);
-  for (size_t i = 0; i < descriptors1.size(); ++i) {
-    for (size_t j = 0; j < descriptors2.size(); ++j) record.Enter(i, j);
-  }
+NearestNeighbors FindNearest(const std::vector<Descriptor>& descriptors1,
+                             const std::vector<Descriptor>& descriptors2, int cap,
+                             bool with_second) {
+  return FindNearestOneByOne(descriptors1, descriptors2, cap, with_second, ExactDistance);
 }
 
 #else
@@ -121,8 +98,8 @@ void FindNearest(const std::vector<Descriptor>& descriptors1,
 using D8 = hn::ScalableTag<uint8_t>;
 using V8 = hn::Vec<D8>;
 
-constexpr size_t kNumVectors =
-    4;  // a group: as many descriptors of the second set as they have lanes
+// A group is as many descriptors of the second set as these vectors have lanes.
+constexpr size_t kNumVectors = 4;
 
 #if HWY_TARGET == HWY_AVX3_DL || HWY_ARCH_ARM  // count the bits of bytes in one step
 
@@ -182,19 +159,19 @@ HWY_INLINE bool FindHits(V8 d0, V8 d1, V8 d2, V8 d3, uint8_t query_limit, const 
 }
 
 HWY_NOINLINE void EnterHits(const uint64_t* hits, size_t num_words, size_t i, const Group& group,
-                            Record* record) {
+                            Search* search) {
   for (size_t w = 0; w < num_words; ++w) {
     for (uint64_t word = hits[w]; word != 0; word &= word - 1) {
       const size_t lane = 64 * w + static_cast<size_t>(__builtin_ctzll(word));
       if (group.begin + lane >= group.end) return;
-      record->Enter(i, group.begin + lane);
-      group.limits[lane] = record->Limit2(group.begin + lane);
+      search->Enter(i, group.begin + lane);
+      group.limits[lane] = search->Limit2(group.begin + lane);
     }
   }
 }
 
 // All queries against one group, two at a time. queries: kNumPieces each; one more than `count`.
-void MatchGroup(const uint8_t* queries, size_t count, const Group& group, Record* record) {
+void MatchGroup(const uint8_t* queries, size_t count, const Group& group, Search* search) {
   const D8 d8;
   const size_t num_lanes = hn::Lanes(d8);
   const size_t num_words = kNumVectors * num_lanes / 64;
@@ -216,19 +193,19 @@ void MatchGroup(const uint8_t* queries, size_t count, const Group& group, Record
       q2 = hn::SaturatedAdd(q2, Distances(q, t2));
       q3 = hn::SaturatedAdd(q3, Distances(q, t3));
     }
-    if (FindHits(p0, p1, p2, p3, record->Limit1(i), group.limits, hits)) {
-      EnterHits(hits, num_words, i, group, record);
+    if (FindHits(p0, p1, p2, p3, search->Limit1(i), group.limits, hits)) {
+      EnterHits(hits, num_words, i, group, search);
     }
-    if (i + 1 < count && FindHits(q0, q1, q2, q3, record->Limit1(i + 1), group.limits, hits)) {
-      EnterHits(hits, num_words, i + 1, group, record);
+    if (i + 1 < count && FindHits(q0, q1, q2, q3, search->Limit1(i + 1), group.limits, hits)) {
+      EnterHits(hits, num_words, i + 1, group, search);
     }
   }
 }
 
-void FindNearest(const std::vector<Descriptor>& descriptors1,
-                 const std::vector<Descriptor>& descriptors2, bool with_second,
-                 std::vector<Nearest>* nearest1, std::vector<Nearest>* nearest2) {
-  Record record(descriptors1, descriptors2, with_second, nearest1, nearest2);
+NearestNeighbors FindNearest(const std::vector<Descriptor>& descriptors1,
+                             const std::vector<Descriptor>& descriptors2, int cap,
+                             bool with_second) {
+  Search search(descriptors1, descriptors2, cap, with_second);
   const size_t count1 = descriptors1.size(), count2 = descriptors2.size();
   std::vector<uint8_t> queries((count1 + 1) * kNumPieces);
   for (size_t i = 0; i < count1; ++i) {
@@ -245,10 +222,11 @@ void FindNearest(const std::vector<Descriptor>& descriptors1,
       for (size_t piece = 0; piece < kNumPieces; ++piece) {
         pieces[piece * group_size + lane] = TrainPiece(descriptors2[j], piece);
       }
-      limits[lane] = record.Limit2(j);
+      limits[lane] = search.Limit2(j);
     }
-    MatchGroup(queries.data(), count1, {pieces.get(), limits.get(), begin, count2}, &record);
+    MatchGroup(queries.data(), count1, {pieces.get(), limits.get(), begin, count2}, &search);
   }
+  return search.Take();
 }
 
 #endif  // HWY_TARGET
@@ -264,10 +242,10 @@ namespace hamming {
 
 HWY_EXPORT(FindNearest);
 
-void FindNearest(const std::vector<Descriptor>& descriptors1,
-                 const std::vector<Descriptor>& descriptors2, bool with_second,
-                 std::vector<Nearest>* nearest1, std::vector<Nearest>* nearest2) {
-  HWY_DYNAMIC_DISPATCH(FindNearest)(descriptors1, descriptors2, with_second, nearest1, nearest2);
+NearestNeighbors FindNearest(const std::vector<Descriptor>& descriptors1,
+                             const std::vector<Descriptor>& descriptors2, int cap,
+                             bool with_second) {
+  return HWY_DYNAMIC_DISPATCH(FindNearest)(descriptors1, descriptors2, cap, with_second);
 }
 
 }  // namespace hamming

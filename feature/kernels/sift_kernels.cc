@@ -21,39 +21,12 @@ namespace colmap_seapoint {
 namespace sift {
 namespace {
 
-// Both directions at once, and what an inner product must exceed to matter.
-class Record {
- public:
-  Record(bool with_second, std::vector<Nearest>* nearest1, std::vector<Nearest>* nearest2)
-      : with_second_(with_second), nearest1_(*nearest1), nearest2_(*nearest2) {}
-
-  int32_t Limit1(size_t i) const { return Limit(nearest1_[i]); }
-  int32_t Limit2(size_t j) const { return Limit(nearest2_[j]); }
-
-  void Enter(int dot, size_t i, size_t j) {
-    Update(dot, static_cast<uint32_t>(j), &nearest1_[i]);
-    Update(dot, static_cast<uint32_t>(i), &nearest2_[j]);
-  }
-
- private:
-  int32_t Limit(const Nearest& nearest) const {
-    return with_second_ ? nearest.second_dot : nearest.dot;
-  }
-
-  static void Update(int dot, uint32_t idx, Nearest* nearest) {
-    if (dot > nearest->dot) {
-      nearest->second_dot = nearest->dot;
-      nearest->dot = dot;
-      nearest->idx = idx;
-    } else if (dot > nearest->second_dot) {
-      nearest->second_dot = dot;
-    }
-  }
-
-  const bool with_second_;
-  std::vector<Nearest>& nearest1_;
-  std::vector<Nearest>& nearest2_;
-};
+// The larger the inner product the nearer: with its sign turned it is a distance.
+int DistanceOf(const SiftDescriptor& a, const SiftDescriptor& b) {
+  int dot = 0;
+  for (size_t k = 0; k < a.size(); ++k) dot += static_cast<int>(a[k]) * static_cast<int>(b[k]);
+  return -dot;
+}
 
 }  // namespace
 }  // namespace sift
@@ -69,20 +42,10 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR
 
-// For machines without vector code, and what the vector code must equal.
-void FindNearest(const std::vector<SiftDescriptor>& descriptors1,
-                 const std::vector<SiftDescriptor>& descriptors2, bool with_second,
-                 std::vector<Nearest>* nearest1, std::vector<Nearest>* nearest2) {
-  Record record(with_second, nearest1, nearest2);
-  for (size_t i = 0; i < descriptors1.size(); ++i) {
-    for (size_t j = 0; j < descriptors2.size(); ++j) {
-      int dot = 0;
-      for (size_t k = 0; k < descriptors1[i].size(); ++k) {
-        dot += static_cast<int>(descriptors1[i][k]) * static_cast<int>(descriptors2[j][k]);
-      }
-      record.Enter(dot, i, j);
-    }
-  }
+NearestNeighbors FindNearest(const std::vector<SiftDescriptor>& descriptors1,
+                             const std::vector<SiftDescriptor>& descriptors2, int cap,
+                             bool with_second) {
+  return FindNearestOneByOne(descriptors1, descriptors2, cap, with_second, DistanceOf);
 }
 
 #else
@@ -98,17 +61,17 @@ constexpr size_t kNumQueries = 4;  // descriptors of the first set that go toget
 // Descriptors of the second set, as many as there are lanes in two vectors.
 struct Group {
   const int16_t* pairs;  // kNumPairs times the group's lanes times two
-  int32_t* limits;       // of each lane
+  int32_t* limits;       // of each lane: what an inner product must exceed to matter
   size_t begin, end;
 };
 
 // Inner products of one query that exceed a limit. dots: of the group's lanes.
 HWY_NOINLINE void EnterHits(const int32_t* dots, size_t i, const Group& group, size_t num_lanes,
-                            Record* record) {
+                            NearestRecord* record) {
   for (size_t lane = 0; lane < num_lanes && group.begin + lane < group.end; ++lane) {
-    if (dots[lane] <= HWY_MIN(record->Limit1(i), group.limits[lane])) continue;
-    record->Enter(dots[lane], i, group.begin + lane);
-    group.limits[lane] = record->Limit2(group.begin + lane);
+    if (dots[lane] <= HWY_MIN(-record->Bound1(i), group.limits[lane])) continue;
+    record->Enter(-dots[lane], i, group.begin + lane);
+    group.limits[lane] = -record->Bound2(group.begin + lane);
   }
 }
 
@@ -122,7 +85,7 @@ HWY_INLINE bool CanMatter(V32 dots0, V32 dots1, int32_t query_limit, const int32
 
 // All queries against one group. queries: kNumPairs numbers of 2 x 16 bits each; their number is
 // rounded up to whole kNumQueries.
-void MatchGroup(const int32_t* queries, size_t count, const Group& group, Record* record) {
+void MatchGroup(const int32_t* queries, size_t count, const Group& group, NearestRecord* record) {
   const D32 d32;
   const D16 d16;
   const size_t num_lanes = hn::Lanes(d32);
@@ -152,7 +115,7 @@ void MatchGroup(const int32_t* queries, size_t count, const Group& group, Record
       if (i + n >= count) return;
       const V32 dots0 = hn::RearrangeToOddPlusEven(sum0, rest0);
       const V32 dots1 = hn::RearrangeToOddPlusEven(sum1, rest1);
-      if (!CanMatter(dots0, dots1, record->Limit1(i + n), group.limits)) return;
+      if (!CanMatter(dots0, dots1, -record->Bound1(i + n), group.limits)) return;
       hn::Store(dots0, d32, dots);
       hn::Store(dots1, d32, dots + num_lanes);
       EnterHits(dots, i + n, group, 2 * num_lanes, record);
@@ -164,11 +127,11 @@ void MatchGroup(const int32_t* queries, size_t count, const Group& group, Record
   }
 }
 
-void FindNearest(const std::vector<SiftDescriptor>& descriptors1,
-                 const std::vector<SiftDescriptor>& descriptors2, bool with_second,
-                 std::vector<Nearest>* nearest1, std::vector<Nearest>* nearest2) {
-  Record record(with_second, nearest1, nearest2);
+NearestNeighbors FindNearest(const std::vector<SiftDescriptor>& descriptors1,
+                             const std::vector<SiftDescriptor>& descriptors2, int cap,
+                             bool with_second) {
   const size_t count1 = descriptors1.size(), count2 = descriptors2.size();
+  NearestRecord record(count1, count2, cap, with_second);
   std::vector<int32_t> queries((count1 + kNumQueries) * kNumPairs);
   for (size_t i = 0; i < count1; ++i) {
     for (size_t k = 0; k < kNumPairs; ++k) {
@@ -186,10 +149,11 @@ void FindNearest(const std::vector<SiftDescriptor>& descriptors1,
       for (size_t k = 0; k < 2 * kNumPairs; ++k) {
         pairs[(k / 2 * group_size + lane) * 2 + k % 2] = descriptors2[j][k];
       }
-      limits[lane] = record.Limit2(j);
+      limits[lane] = -record.Bound2(j);
     }
     MatchGroup(queries.data(), count1, {pairs.get(), limits.get(), begin, count2}, &record);
   }
+  return record.Take();
 }
 
 #endif  // HWY_TARGET
@@ -205,10 +169,10 @@ namespace sift {
 
 HWY_EXPORT(FindNearest);
 
-void FindNearest(const std::vector<SiftDescriptor>& descriptors1,
-                 const std::vector<SiftDescriptor>& descriptors2, bool with_second,
-                 std::vector<Nearest>* nearest1, std::vector<Nearest>* nearest2) {
-  HWY_DYNAMIC_DISPATCH(FindNearest)(descriptors1, descriptors2, with_second, nearest1, nearest2);
+NearestNeighbors FindNearest(const std::vector<SiftDescriptor>& descriptors1,
+                             const std::vector<SiftDescriptor>& descriptors2, int cap,
+                             bool with_second) {
+  return HWY_DYNAMIC_DISPATCH(FindNearest)(descriptors1, descriptors2, cap, with_second);
 }
 
 }  // namespace sift

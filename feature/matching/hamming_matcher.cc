@@ -3,13 +3,14 @@
 #include <algorithm>
 
 #include "feature/kernels/hamming_kernels.h"
+#include "feature/matching/mutual_nearest.h"
 
 namespace colmap_seapoint {
 
 namespace {
 
-// From where on a distance does not matter: neither as the nearest nor as a second nearest, which
-// every nearest within max_distance passes against.
+// From here on a distance does not matter: it is too large for a match, and as a second nearest it
+// lets every nearest within max_distance pass.
 int DistanceCap(const HammingMatcherOptions& options) {
   int cap = 0;
   while (cap <= 256 && options.max_ratio * cap < options.max_distance) ++cap;
@@ -36,22 +37,10 @@ int HammingDistance(const Descriptor& a, const Descriptor& b) {
 FeatureMatches MatchHamming(const std::vector<Descriptor>& descriptors1,
                             const std::vector<Descriptor>& descriptors2,
                             const HammingMatcherOptions& options) {
-  const hamming::Nearest none = {DistanceCap(options), DistanceCap(options), 0};
-  std::vector<hamming::Nearest> nearest1(descriptors1.size(), none);
-  std::vector<hamming::Nearest> nearest2(descriptors2.size(), none);
-  hamming::FindNearest(descriptors1, descriptors2, options.max_ratio < 1, &nearest1, &nearest2);
-  auto passes = [&](const hamming::Nearest& nearest) {
-    return nearest.distance <= options.max_distance &&
-           (options.max_ratio >= 1 ||
-            nearest.distance <= options.max_ratio * nearest.second_distance);
-  };
-  FeatureMatches matches;
-  for (uint32_t i = 0; i < descriptors1.size(); ++i) {
-    if (!passes(nearest1[i])) continue;
-    const hamming::Nearest& back = nearest2[nearest1[i].idx];
-    if (back.idx == i && passes(back)) matches.push_back({i, nearest1[i].idx});
-  }
-  return matches;
+  const NearestLimits limits = {static_cast<double>(options.max_distance), options.max_ratio};
+  const NearestNeighbors nearest =
+      hamming::FindNearest(descriptors1, descriptors2, DistanceCap(options), limits.NeedSecond());
+  return MatchMutualNearest(nearest, limits, [](int distance) { return distance; });
 }
 
 }  // namespace colmap_seapoint

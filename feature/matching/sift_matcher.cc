@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "feature/kernels/sift_kernels.h"
+#include "feature/matching/mutual_nearest.h"
 
 namespace colmap_seapoint {
 
@@ -13,11 +15,12 @@ constexpr double kSquaredLength = 512.0 * 512.0;
 
 double Angle(int dot) { return std::acos(std::min(1.0, dot / kSquaredLength)); }
 
-// Up to where an inner product does not matter: neither as the nearest's nor as a second nearest's,
-// which every nearest within max_distance passes against. (Below 0 there are none.)
-int DotFloor(const SiftMatcherOptions& options) {
+// From here on the kernel's distance, an inner product with its sign turned, does not matter: it is
+// too large for a match, and as a second nearest it lets every nearest within max_distance pass.
+// (No inner product is negative, whatever the options: the cap is 1 at most.)
+int DistanceCap(const SiftMatcherOptions& options) {
   const double largest_angle = std::min(options.max_distance / options.max_ratio, M_PI / 2);
-  return static_cast<int>(std::floor(kSquaredLength * std::cos(largest_angle))) - 1;
+  return 1 - static_cast<int>(std::floor(kSquaredLength * std::cos(largest_angle)));
 }
 
 }  // namespace
@@ -38,24 +41,13 @@ double SiftDistance(const SiftDescriptor& a, const SiftDescriptor& b) {
 FeatureMatches MatchSift(const std::vector<SiftDescriptor>& descriptors1,
                          const std::vector<SiftDescriptor>& descriptors2,
                          const SiftMatcherOptions& options) {
-  const int floor = DotFloor(options);
-  const sift::Nearest none = {floor, floor, 0};
-  std::vector<sift::Nearest> nearest1(descriptors1.size(), none);
-  std::vector<sift::Nearest> nearest2(descriptors2.size(), none);
-  sift::FindNearest(descriptors1, descriptors2, options.max_ratio < 1, &nearest1, &nearest2);
-  auto passes = [&](const sift::Nearest& nearest) {
-    const double distance = Angle(nearest.dot);
-    return nearest.dot > floor && distance <= options.max_distance &&
-           (options.max_ratio >= 1 || nearest.second_dot == floor ||
-            distance <= options.max_ratio * Angle(nearest.second_dot));
-  };
-  FeatureMatches matches;
-  for (uint32_t i = 0; i < descriptors1.size(); ++i) {
-    if (!passes(nearest1[i])) continue;
-    const sift::Nearest& back = nearest2[nearest1[i].idx];
-    if (back.idx == i && passes(back)) matches.push_back({i, nearest1[i].idx});
-  }
-  return matches;
+  const int cap = DistanceCap(options);
+  const NearestLimits limits = {options.max_distance, options.max_ratio};
+  const NearestNeighbors nearest =
+      sift::FindNearest(descriptors1, descriptors2, cap, limits.NeedSecond());
+  return MatchMutualNearest(nearest, limits, [&](int distance) {
+    return distance < cap ? Angle(-distance) : std::numeric_limits<double>::infinity();
+  });
 }
 
 }  // namespace colmap_seapoint

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "colmap_seapoint/base/error.h"
-#include "colmap_seapoint/base/vector_clones.h"
 #include "feature/descriptor/rbrief_descriptor.h"
 #include "feature/descriptor/rbrief_pattern.h"
+#include "feature/kernels/bit_kernels.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -44,8 +44,8 @@ uint16_t Pixel(float coordinate) {
   return static_cast<uint16_t>(std::lround(std::clamp(coordinate, 0.0f, 65535.0f)));
 }
 
-std::array<uint32_t, 3> Signature(const Descriptor& descriptor) {
-  std::array<uint32_t, 3> signature;
+bits::Signature SignatureOf(const Descriptor& descriptor) {
+  bits::Signature signature;
   std::memcpy(signature.data(), descriptor.data(), sizeof(signature));
   return signature;
 }
@@ -55,29 +55,6 @@ std::array<uint32_t, 3> Signature(const Descriptor& descriptor) {
 Descriptor Canonical(const Features& features, size_t i, int extra) {
   const auto steps = static_cast<int>(std::lround(features.points[i].orientation / kTurnStep));
   return TurnDescriptor(features.descriptors[i], extra - steps);
-}
-
-struct Near {
-  uint32_t index;
-  int distance;
-};
-
-// Writes the entries that are near enough, and returns how many they are.
-SEAPOINT_VECTOR_CLONES
-size_t FindNear(const uint32_t* query, const SeaPointIndex::Entry* entries, size_t count,
-                int max_distance, Near* near_ones) {
-  uint64_t low;
-  std::memcpy(&low, query, sizeof(low));
-  size_t num_found = 0;
-  for (size_t i = 0; i < count; ++i) {
-    uint64_t other;
-    std::memcpy(&other, entries[i].signature.data(), sizeof(other));
-    const int distance =
-        __builtin_popcountll(low ^ other) + __builtin_popcount(query[2] ^ entries[i].signature[2]);
-    near_ones[num_found] = {static_cast<uint32_t>(i), distance};
-    num_found += distance <= max_distance ? 1 : 0;
-  }
-  return num_found;
 }
 
 // The middle of the window of steps, all around, that holds most: nearest to 0 of equals.
@@ -141,7 +118,7 @@ SeaPointIndex::Picture SeaPointIndex::MakeEntries(const Features& features) cons
     const SeaPoint& point = features.points[i];
     const Descriptor descriptor = Canonical(features, i, 0);
     picture.words.push_back(vocabulary_.NearestWord(descriptor));
-    picture.entries.push_back({Signature(descriptor),
+    picture.entries.push_back({SignatureOf(descriptor),
                                static_cast<uint32_t>(AngleStep(point.orientation)), Pixel(point.x),
                                Pixel(point.y)});
   }
@@ -181,19 +158,19 @@ void SeaPointIndex::Finish() {
 // Takes the entries within the descriptor's two words that are nearer than what is there.
 void SeaPointIndex::FindAlike(const Descriptor& descriptor, const std::vector<bool>& is_excluded,
                               std::vector<Alike>* nearest) const {
-  const auto signature = Signature(descriptor);
+  const auto signature = SignatureOf(descriptor);
   const auto words = vocabulary_.NearestWords(descriptor);
-  std::array<Near, kMaxWordSize> near_ones;
+  std::array<bits::Near, kMaxWordSize> near_ones;
   for (size_t w = 0; w < (words[0] == words[1] ? 1u : 2u); ++w) {
     const Entry* begin = entries_.data() + word_begins_[words[w]];
     const size_t count = word_begins_[words[w] + 1] - word_begins_[words[w]];
     if (count > kMaxWordSize) continue;
     const int max_distance =
         nearest->size() < kVotesPerPoint ? kMaxSignatureDistance : nearest->back().distance;
-    const size_t num_near =
-        FindNear(signature.data(), begin, count, max_distance, near_ones.data());
+    const size_t num_near = bits::FindNear(signature, &begin->signature, sizeof(Entry), count,
+                                           max_distance, near_ones.data());
     for (size_t n = 0; n < num_near; ++n) {
-      const Alike one = {near_ones[n].distance, begin + near_ones[n].index};
+      const Alike one = {near_ones[n].distance, begin + near_ones[n].idx};
       if (nearest->size() == kVotesPerPoint && !(one < nearest->back())) continue;
       if (!is_excluded[one.entry->picture_and_angle >> 8]) Insert(one, nearest);
     }

@@ -5,12 +5,12 @@
 #include <limits>
 #include <random>
 
-#include "colmap_seapoint/base/vector_clones.h"
+#include "feature/kernels/bit_kernels.h"
 
 namespace colmap_seapoint {
 namespace {
 
-using Centre = std::array<uint64_t, 4>;
+using Centre = bits::WholeBits;
 using Descriptors = std::vector<Centre>;
 
 constexpr size_t kMaxChildren = 8;
@@ -24,36 +24,8 @@ Centre ToCentre(const Descriptor& descriptor) {
   return centre;
 }
 
-struct TwoNearest {
-  uint32_t nearest = 0, second = 0;
-  int distance = 257, second_distance = 257;
-};
-
-// Ties go to the smaller index.
-SEAPOINT_VECTOR_CLONES
-void FindTwoNearest(const uint64_t* query, const Centre* centres, uint32_t count,
-                    TwoNearest* result) {
-  for (uint32_t i = 0; i < count; ++i) {
-    const uint64_t* centre = centres[i].data();
-    const int distance =
-        __builtin_popcountll(query[0] ^ centre[0]) + __builtin_popcountll(query[1] ^ centre[1]) +
-        __builtin_popcountll(query[2] ^ centre[2]) + __builtin_popcountll(query[3] ^ centre[3]);
-    if (distance < result->distance) {
-      result->second = result->nearest;
-      result->second_distance = result->distance;
-      result->nearest = i;
-      result->distance = distance;
-    } else if (distance < result->second_distance) {
-      result->second = i;
-      result->second_distance = distance;
-    }
-  }
-}
-
 uint32_t Nearest(const Centre& query, const Descriptors& centres) {
-  TwoNearest found;
-  FindTwoNearest(query.data(), centres.data(), static_cast<uint32_t>(centres.size()), &found);
-  return found.nearest;
+  return bits::FindTwoNearest(query, centres.data(), centres.size()).nearest;
 }
 
 // Bit by bit what most of the members have.
@@ -148,11 +120,15 @@ void SeaPointVocabulary::Split(uint32_t node, Centre* begin, Centre* end, size_t
   }
 }
 
+bits::TwoNearest SeaPointVocabulary::NearestChildren(uint32_t node,
+                                                     const Centre& descriptor) const {
+  return bits::FindTwoNearest(descriptor, &centres_[nodes_[node].first_child],
+                              nodes_[node].num_children);
+}
+
 uint32_t SeaPointVocabulary::Descend(uint32_t node, const Centre& descriptor) const {
   while (nodes_[node].num_children > 0) {
-    TwoNearest found;
-    FindTwoNearest(descriptor.data(), &centres_[nodes_[node].first_child],
-                   nodes_[node].num_children, &found);
+    const bits::TwoNearest found = NearestChildren(node, descriptor);
     node = nodes_[node].first_child + found.nearest;
   }
   return nodes_[node].word;
@@ -167,9 +143,7 @@ std::array<uint32_t, 2> SeaPointVocabulary::NearestWords(const Descriptor& descr
   uint32_t node = 0, detour = 0;
   int least_extra = std::numeric_limits<int>::max();
   while (nodes_[node].num_children > 0) {
-    TwoNearest found;
-    FindTwoNearest(query.data(), &centres_[nodes_[node].first_child], nodes_[node].num_children,
-                   &found);
+    const bits::TwoNearest found = NearestChildren(node, query);
     if (found.second_distance - found.distance < least_extra) {
       least_extra = found.second_distance - found.distance;
       detour = nodes_[node].first_child + found.second;

@@ -11,6 +11,10 @@
 
 namespace colmap_seapoint {
 
+namespace bits {
+struct TwoNearest;
+}
+
 class SeaPointVocabulary {
  public:
   // One word and no more: what an empty sample gives.
@@ -38,6 +42,7 @@ class SeaPointVocabulary {
   using Centre = std::array<uint64_t, 4>;
 
   void Split(uint32_t node, Centre* begin, Centre* end, size_t num_words, int seed);
+  bits::TwoNearest NearestChildren(uint32_t node, const Centre& descriptor) const;
   uint32_t Descend(uint32_t node, const Centre& descriptor) const;
 
   std::vector<Node> nodes_;  // the root first

@@ -7,6 +7,8 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
+#include "tests/vector_targets.h"
+
 namespace colmap_seapoint {
 namespace {
 
@@ -20,12 +22,33 @@ ColorImage RandomColors(int width, int height) {
 
 TEST(Picture, LumaIsOpenCvsGrey) {
   ColorImage color = RandomColors(317, 211);
-  const GrayImage luma = LumaOf(color);
   cv::Mat oracle;
   cv::cvtColor(cv::Mat(color.height, color.width, CV_8UC3, color.data.data()), oracle,
                cv::COLOR_RGB2GRAY);
-  for (int y = 0; y < luma.height; ++y) {
-    for (int x = 0; x < luma.width; ++x) ASSERT_EQ(luma.At(x, y), oracle.at<uint8_t>(y, x));
+  ForEachVectorTarget([&] {
+    const GrayImage luma = LumaOf(color);
+    for (int y = 0; y < luma.height; ++y) {
+      for (int x = 0; x < luma.width; ++x) ASSERT_EQ(luma.At(x, y), oracle.at<uint8_t>(y, x));
+    }
+  });
+}
+
+// JFIF's own numbers, to 2^-16. (A half is rounded down: 255.5 must not become 256.)
+TEST(Picture, ChromaIsJfifsWithEveryInstructionSet) {
+  for (const int width : {1, 3, 15, 16, 17, 33, 317}) {
+    const ColorImage color = RandomColors(width, 8);
+    ForEachVectorTarget([&] {
+      const Picture picture = PictureOf(color);
+      for (size_t i = 0; i < picture.cb.data.size(); ++i) {
+        const int64_t r = color.data[3 * i], g = color.data[3 * i + 1], b = color.data[3 * i + 2];
+        const int64_t cb = -11058 * r - 21710 * g + 32768 * b + (128 << 16);
+        const int64_t cr = 32768 * r - 27439 * g - 5329 * b + (128 << 16);
+        ASSERT_EQ(picture.cb.data[i], (cb + 32767) / 65536);
+        ASSERT_EQ(picture.cr.data[i], (cr + 32767) / 65536);
+        ASSERT_NEAR(picture.cb.data[i], 128 - 0.168735892 * r - 0.331264108 * g + 0.5 * b, 0.51);
+        ASSERT_NEAR(picture.cr.data[i], 128 + 0.5 * r - 0.418687589 * g - 0.081312411 * b, 0.51);
+      }
+    });
   }
 }
 
