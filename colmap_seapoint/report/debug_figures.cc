@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "colmap_seapoint/io/image/image_file.h"
+#include "densify/densify_pair.h"
 #include "densify/match/rectification.h"
 
 namespace colmap_seapoint {
@@ -138,12 +139,12 @@ void DebugFigures::WriteMasks(const PairDebug& pair) const {
                  Percent(rate));
     WriteFigure(WithPercent("fig11_mask_overlap", rate), canvas);
   }
-  if (pair.covered_range.empty()) return;
+  if (pair.known.covered_range.empty()) return;
   std::vector<uint8_t> covered;
-  for (const float range : pair.covered_range) covered.push_back(range > 0 ? 1 : 0);
+  for (const float range : pair.known.covered_range) covered.push_back(range > 0 ? 1 : 0);
   const double rate = pair.report.overlap;
   Canvas canvas = BlackCanvas(pair);
-  canvas.Tint(canvas.Cells(pair.cells, covered), white, 1);
+  canvas.Tint(canvas.Cells(pair.known.grid, covered), white, 1);
   canvas.Title(NameOf(pair.report.image_idx1) +
                ": reconstructed before, by any pair: " + Percent(rate));
   WriteFigure(WithPercent("fig11_reconstructed", rate), canvas);
@@ -151,10 +152,10 @@ void DebugFigures::WriteMasks(const PairDebug& pair) const {
 
 void DebugFigures::WriteDisparities(const PairDebug& pair) {
   const auto partial = Place(pair, pair.partial->partial);
-  const auto normal = Place(pair, pair.normal.partial);
+  const auto normal = Place(pair, pair.normal->partial);
   const Eigen::Vector2f range = RangeOf(normal.empty() ? partial : normal);
   Canvas right = BlackCanvas(pair);
-  right.Disparities(normal, SizeOf(pair.normal.partial), kRed, range);
+  right.Disparities(normal, SizeOf(pair.normal->partial), kRed, range);
   right.Disparities(partial, SizeOf(pair.partial->partial), kGreen, range);
   right.Title(NameOf(pair.report.image_idx1) + ", " + NameOf(pair.report.image_idx2) + ": " +
               std::to_string(partial.size()) + " samples (green); " +
@@ -194,10 +195,10 @@ void DebugFigures::WriteRevived(const PairDebug& pair) const {
   const Interpair ends(pair);
   Canvas left = BlackCanvas(pair);
   // The mask is made of cells: a rim of their size is not drawn as hidden by the overlap.
-  const double radius = std::max(0.0, pair.influence_radius1 - pair.cells.cell);
+  const double radius = std::max(0.0, pair.influence_radius1 - pair.known.grid.cell);
   const cv::Mat overlap = left.Hull(ends.All1()) | left.Discs(ends.All1(), radius);
   const cv::Mat around_revived =
-      left.Discs(ends.revived1, pair.influence_radius1 + pair.cells.cell);
+      left.Discs(ends.revived1, pair.influence_radius1 + pair.known.grid.cell);
   std::vector<PlacedDisparity> outside, revived, uncovered;
   for (const PlacedDisparity& sample : partial) {
     if (!left.Holds(overlap, sample.pixel)) {

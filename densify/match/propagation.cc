@@ -288,18 +288,6 @@ class Propagation {
 
 }  // namespace
 
-SampleGrid::SampleGrid(const RectWindow& rect_window, int sample_step)
-    : window(rect_window),
-      step(sample_step),
-      width((rect_window.width + sample_step - 1) / sample_step),
-      height((rect_window.height + sample_step - 1) / sample_step) {}
-
-bool Gate::Admits(float gate, float disparity) {
-  if (gate == kOpen) return true;
-  if (gate == kClosed) return false;
-  return std::abs(disparity - gate) > 4 + 0.04f * gate;
-}
-
 PartialDisparity Propagate(const RectPicture& picture1, const RectPicture& picture2,
                            const Gate& gate, const std::vector<Seed>& seeds,
                            const PropagationOptions& options, int num_threads) {
