@@ -6,7 +6,6 @@
 
 #include "colmap_seapoint/base/sparse_model.h"
 #include "colmap_seapoint/base/stereo_rig.h"
-#include "densify/match/cell_grid.h"
 #include "densify/match/view.h"
 
 namespace colmap_seapoint {
