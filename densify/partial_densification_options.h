@@ -1,10 +1,18 @@
+// What a user may set of densification.
 #pragma once
 
 #include <string>
 
 #include "colmap_seapoint/base/options.h"
+#include "densify/match/plan_pair.h"
 
 namespace colmap_seapoint {
+
+// What a pair is compared with before it is densified.
+enum class Redundancy {
+  kSequential,  // the previous pair (paper 2.5)
+  kAll,         // every earlier view of the same place (ours)
+};
 
 // Each field's meaning, unit, legal range and origin: Bind(), in the .cc file.
 struct PartialDensificationOptions {
@@ -23,7 +31,11 @@ struct PartialDensificationOptions {
   bool write_maps = false;
 
   void Bind(OptionTable* table);
-  std::string Check() const;
+  std::string Check() const;  // "" or the whole sentence: name, value, rule
+
+  // What the two texts say.
+  DensificationMode Mode() const;
+  Redundancy AgainstWhat() const;
 };
 
 }  // namespace colmap_seapoint

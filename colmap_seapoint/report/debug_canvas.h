@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "colmap_seapoint/base/picture.h"
-#include "densify/overlap/cell_grid.h"
+#include "densify/match/cell_grid.h"
 
 namespace colmap_seapoint {
 

@@ -1,7 +1,8 @@
 // What two views cannot agree on is taken out again (ours).
 #pragma once
 
-#include "densify/match/propagation.h"
+#include "densify/match/rectification.h"
+#include "densify/match/sample_grid.h"
 #include "densify/match/surface_fit.h"
 
 namespace colmap_seapoint {

@@ -3,7 +3,8 @@
 // of a depth edge by that side's surface.
 #pragma once
 
-#include "densify/match/propagation.h"
+#include "densify/match/rectification.h"
+#include "densify/match/sample_grid.h"
 
 namespace colmap_seapoint {
 

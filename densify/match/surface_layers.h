@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "densify/kernels/tile_kernels.h"
-#include "densify/match/propagation.h"
+#include "densify/match/sample_grid.h"
 
 namespace colmap_seapoint {
 

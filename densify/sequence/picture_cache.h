@@ -12,7 +12,7 @@
 
 #include "colmap_seapoint/base/features.h"
 #include "colmap_seapoint/base/picture.h"
-#include "densify/densify_sequence.h"
+#include "densify/sequence/picture_source.h"
 
 namespace colmap_seapoint {
 

@@ -35,7 +35,10 @@ endif()
 foreach(box base feature densify flags simd)
   set_target_properties(seapoint_${box} PROPERTIES EXPORT_NAME ${box})
 endforeach()
-install(TARGETS seapoint_base seapoint_feature_kernels seapoint_feature_detector seapoint_feature_descriptor seapoint_feature_matching seapoint_feature_retrieval seapoint_feature seapoint_densify seapoint_flags seapoint_simd
+install(TARGETS seapoint_base seapoint_feature_kernels seapoint_feature_detector seapoint_feature_descriptor seapoint_feature_matching seapoint_feature_retrieval seapoint_feature
+  seapoint_densify_kernels seapoint_densify_match seapoint_densify_overlap seapoint_densify_cloud
+  seapoint_densify_sequence seapoint_densify_maps seapoint_densify
+  seapoint_flags seapoint_simd
   EXPORT colmap_seapoint_targets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
 install(EXPORT colmap_seapoint_targets NAMESPACE colmap_seapoint::
