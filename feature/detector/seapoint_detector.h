@@ -31,18 +31,23 @@ struct SeaPointExtractionOptions {
 };
 
 struct DetectionSummary {
-  ThresholdStatus status = ThresholdStatus::kFlat;  // of the finest level
-  double threshold = 0;                             // on the 0..255 map of the finest level
-  int num_rounds = 0;                               // histograms explored on the finest level
-  int num_local_maxima = 0;  // candidates after non-maximum suppression, finest level
+  ThresholdStatus status = ThresholdStatus::kFlat;
+  double threshold = 0;      // on the 0..255 map
+  int num_rounds = 0;        // histograms explored
+  int num_local_maxima = 0;  // candidates after non-maximum suppression
 };
 
-// One pyramid level. Points in the coordinates of `picture` (scale 1, orientation 0), strongest
-// first, ties in raster order; none nearer to the border than `border` pixels, none where `mask`
-// (empty, or of the picture's size) is 0. num_threads (-1: all cores) share the picture in bands of
-// rows; the points are the same for any number. About 3 ms of CPU a megapixel with AVX2.
-std::vector<SeaPoint> DetectSeaPoints(const GrayImage& picture, const GrayImage& mask,
-                                      const SeaPointExtractionOptions& options, int border,
-                                      DetectionSummary* summary, int num_threads = 1);
+struct Detection {
+  std::vector<SeaPoint> points;  // strongest first, ties in raster order
+  DetectionSummary summary;
+};
+
+// Finds the SeaPoints of one pyramid level, in the coordinates of `picture` (scale 1, orientation
+// 0). There is none nearer to the edge than `border` pixels, and none where `mask` (empty, or of
+// the picture's size) is 0. num_threads (-1: all cores) share the picture in bands of rows; the
+// points are the same for any number. About 3 ms of CPU a megapixel with AVX2.
+Detection DetectSeaPoints(const GrayImage& picture, const GrayImage& mask,
+                          const SeaPointExtractionOptions& options, int border,
+                          int num_threads = 1);
 
 }  // namespace colmap_seapoint
