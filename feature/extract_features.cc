@@ -16,8 +16,8 @@ constexpr double kLevelScale = 1.4142135623730951;  // between neighbouring pyra
 
 // One level of the pyramid (paper 4).
 struct Level {
-  int width, height;                  // pixels
-  double scale_x, scale_y;            // from its pixels to the picture's
+  int width = 0, height = 0;          // pixels
+  double scale_x = 1, scale_y = 1;    // from its pixels to the picture's
   SeaPointExtractionOptions options;  // with its share of the target interval
 };
 
@@ -40,10 +40,12 @@ std::vector<Level> PlanLevels(const GrayImage& picture, const SeaPointExtraction
   std::vector<Level> levels;
   for (size_t l = 0; l < least.size(); ++l) {
     const double scale = std::pow(kLevelScale, static_cast<int>(l));
-    Level level = {static_cast<int>(std::lround(picture.width / scale)),
-                   static_cast<int>(std::lround(picture.height / scale)), 1, 1, options};
+    Level level;
+    level.width = std::max(1, static_cast<int>(std::lround(picture.width / scale)));
+    level.height = std::max(1, static_cast<int>(std::lround(picture.height / scale)));
     level.scale_x = static_cast<double>(picture.width) / level.width;
     level.scale_y = static_cast<double>(picture.height) / level.height;
+    level.options = options;
     level.options.min_num_features = std::max(1, least[l]);
     level.options.max_num_features = std::max(1, most[l]);
     levels.push_back(std::move(level));
@@ -103,7 +105,7 @@ ExtractedFeatures ExtractFeatures(const GrayImage& picture, const GrayImage& mas
     if (std::min(level.width, level.height) <= 2 * border) break;  // no room for any descriptor
 
     const Detection detection = DetectSeaPoints(grey, level_mask.Get(), level.options, border);
-    Append(Describe(grey, detection.points, options.descriptor == "sift"), level, &all.features);
+    Append(Describe(grey, detection.points, options.WantsSift()), level, &all.features);
     all.detection.push_back(detection.summary);
   }
   return all;

@@ -14,20 +14,22 @@
 
 namespace colmap_seapoint {
 
+// Legal ranges are in Bind().
 struct SeaPointExtractionOptions {
-  int min_num_features = 2500;
+  int min_num_features = 2500;  // target interval, SeaPoints a picture (paper 2.3)
   int max_num_features = 3000;
-  int num_levels = 1;
-  double smoothing_sigma = 1.5;
-  int window_size = 7;
-  double harris_k = 0.04;
-  int nms_radius = 0;
-  std::string descriptor = "rbrief";  // or "sift"; see Features
-  double light_balance = 0.5;
+  int num_levels = 1;                 // of the pyramid; above 1: SI-SeaPoints (paper 4)
+  double smoothing_sigma = 1.5;       // Gaussian before the gradients, pixels; 0 = none (ours)
+  int window_size = 7;                // box over the gradient products, pixels, odd (ours)
+  double harris_k = 0.04;             // of det - k trace^2 (ours)
+  int nms_radius = 0;                 // pixels; 0 = a tenth of the points' spacing (ours)
+  std::string descriptor = "rbrief";  // or "sift" beside it (paper 2.4, 4)
+  double light_balance = 0.5;         // 0 = none (the paper) .. 1, see light_balance.h (ours)
 
   void Bind(OptionTable* table);
   // Rules between options: "" or the whole sentence. Ranges are the table's.
   std::string Check() const;
+  bool WantsSift() const { return descriptor == "sift"; }
 };
 
 struct DetectionSummary {
