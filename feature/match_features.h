@@ -16,7 +16,8 @@
 
 namespace colmap_seapoint {
 
-// Raise it whenever the same SeaPoints and options give other matches than before.
+// Raise it whenever the same SeaPoints and options give other matches than before, together with
+// the hashes in tests/feature/matching_version_test.cc.
 inline constexpr char kMatchingVersion[] = "4";
 
 struct SeaPointMatchingOptions {

@@ -7,7 +7,8 @@
 
 namespace colmap_seapoint {
 
-// Raise it whenever the same SeaPoints give other loop pairs than before.
+// Raise it whenever the same SeaPoints give other loop pairs than before, together with the hash in
+// tests/feature/retrieval_version_test.cc.
 inline constexpr char kRetrievalVersion[] = "1";
 
 struct LoopCandidate {
