@@ -21,7 +21,8 @@ ModelPictures::ModelPictures(const SparseModel& model, const std::filesystem::pa
       database_(database),
       extraction_(extraction),
       matching_(matching),
-      has_stored_(model.images.size()) {
+      has_stored_(model.images.size()),
+      described_(model.images.size()) {
   if (database_ == nullptr) return;
   const std::map<uint32_t, Camera> cameras = ReadCameras(*database_);
   std::unordered_map<std::string, const Camera*> camera_of;  // the model's
@@ -67,8 +68,23 @@ std::string ModelPictures::Check(int image_idx) const {
   }
 }
 
+RunReport::Input ModelPictures::Describe(int image_idx) const {
+  {
+    const std::lock_guard<std::mutex> lock(described_mutex_);
+    const auto& described = described_.at(static_cast<size_t>(image_idx));
+    if (described) return *described;
+  }
+  return DescribeInput(ImageAt(image_idx).name, PathOf(image_idx));
+}
+
 Picture ModelPictures::ReadPicture(int image_idx) {
-  Picture picture = colmap_seapoint::ReadPicture(PathOf(image_idx));
+  const PictureFile file(PathOf(image_idx));
+  {
+    const std::lock_guard<std::mutex> lock(described_mutex_);
+    auto& described = described_.at(static_cast<size_t>(image_idx));
+    if (!described) described = {ImageAt(image_idx).name, file.Size(), file.Hash()};
+  }
+  Picture picture = file.Decode();
   const std::string problem = CheckSize(image_idx, picture.luma.width, picture.luma.height);
   if (problem.empty()) return picture;
   throw Error(PathOf(image_idx).string(), problem,
