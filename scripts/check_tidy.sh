@@ -22,7 +22,7 @@ mkdir -p $passed
 version=$("$tidy" --version | cat - .clang-tidy | sha256sum)
 # Headers of ours by source, as the compiler found them: "source<TAB>header" a line.
 includes=$passed/includes.tsv
-ninja -C $build -t deps | sed "s|^    $PWD/||" | awk '
+ninja -C $build -t deps | sed "s#^    \($PWD\|[.][.]/[.][.]\)/##" | awk '
   /^[^ ].*: #deps/ { source = ""; next }
   /^ / || /^$/ { next }
   source == "" { source = $0; next }
