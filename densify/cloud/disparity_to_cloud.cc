@@ -15,7 +15,7 @@ const float* RowOf(const std::vector<float>& values, const SampleGrid& grid, int
   return values.data() + static_cast<size_t>(b) * static_cast<size_t>(grid.width);
 }
 
-// Of the pixel that the place lies in, or the nearest one.
+// The colour of the pixel that the place lies in, or of the nearest one.
 std::array<uint8_t, 3> ColorNear(const Picture& picture, float x, float y) {
   return ColorAt(picture, std::clamp(static_cast<int>(x), 0, picture.luma.width - 1),
                  std::clamp(static_cast<int>(y), 0, picture.luma.height - 1));

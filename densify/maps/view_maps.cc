@@ -47,7 +47,7 @@ SampleFrame SampleFrameOf(const PairGeometry& geometry, int step) {
           static_cast<double>(step)};
 }
 
-// Of a pair and this view.
+// What all samples of a pair share in this view.
 struct ViewMapRenderer::PairTerms {
   Eigen::Matrix3d rect_from_world, rect_from_cam;
   Eigen::Vector3d rect_center;  // the view's centre in the pair's frame

@@ -65,7 +65,7 @@ class Gate {
   const SampleGrid& Nodes() const { return nodes_; }
   float& operator[](size_t node) { return value_[node]; }
   float operator[](size_t node) const { return value_[node]; }
-  // Of the node whose square holds a window pixel.
+  // The value of the node whose square holds a window pixel.
   float At(int x, int y) const { return value_[nodes_.IndexAt(x, y)]; }
   // Whether a gate's value lets a disparity pass.
   static bool Admits(float gate, float disparity) {
@@ -79,12 +79,13 @@ class Gate {
   std::vector<float> value_;
 };
 
-// What propagation found: one value a sample. `disparity` is 0 where nothing matched.
+// What was matched (paper 2.6, Figure 13), one value a sample: of propagation on nodes, of
+// refinement on samples.
 struct PartialDisparity {
   SampleGrid grid;
-  std::vector<float> disparity;
-  std::vector<float> score;
-  int num_failed_seeds = 0;  // around which hardly anything matched (paper 2.7)
+  std::vector<float> disparity;  // rect pixels; 0 where nothing matched
+  std::vector<float> score;      // correlation, up to 1; -1 where nothing matched
+  int num_failed_seeds = 0;      // around which hardly anything matched (paper 2.7)
 };
 
 }  // namespace colmap_seapoint

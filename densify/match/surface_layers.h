@@ -11,7 +11,8 @@ namespace colmap_seapoint {
 
 inline constexpr float kMaxLayerSlope = 1.2f;  // pixels of disparity a pixel, on one surface
 
-// Marks of a tile's nodes and of one ring around, [row][column] as in tile::Prediction.
+// One mark for each of a tile's nodes and of the ring of nodes around them, [row][column] as in
+// tile::Prediction.
 using NodeMarks = std::array<std::array<bool, tile::kNodesX>, tile::kNodesY>;
 
 struct SurfaceLayer {

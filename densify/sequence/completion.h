@@ -37,7 +37,7 @@ struct CompletionView {
   std::vector<uint8_t> tries;           // how often its surface was tried in vain, 0 .. 2
 };
 
-// Without the predicted ranges.
+// All of it but the predicted ranges.
 CompletionView LookAt(const View& view, const CellGrid& cells,
                       const std::vector<PackedFootprint>& footprints, const GivenUp& given_up);
 

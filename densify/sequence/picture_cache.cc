@@ -6,7 +6,7 @@
 
 namespace colmap_seapoint {
 
-// The new one, and those still being read, count as much as the largest that is there.
+// The new picture, and those still being read, count as much as the largest that is there.
 void PictureCache::MakeRoom() {
   size_t largest = 0;
   for (const Entry& entry : pictures_) largest = std::max<size_t>(largest, *entry.num_bytes);
