@@ -32,8 +32,8 @@ struct PlacedImage {
 
 // The images whose position is known, in their order: from --SpatialMatching.positions_path when
 // it is given, else from the EXIF of the pictures in `image_path` when that is given, else from the
-// database. One source only, since their frames differ. The others are left out. Throws Error when
-// no position is known.
+// database: never from two of them, since their frames differ. The other images are left out.
+// Throws Error when no position is known.
 std::vector<PlacedImage> PlaceImages(const std::vector<DatabaseImage>& images,
                                      const SpatialPairOptions& options,
                                      const std::string& image_path,

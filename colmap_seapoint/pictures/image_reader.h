@@ -23,12 +23,13 @@ struct ImageReaderOptions {
   std::string mask_path;
 
   void Bind(OptionTable* table);
-  // "" or the whole sentence.
+  // "", or the whole sentence about what is wrong.
   std::string Check() const;
 };
 
-// Names below `image_path`, sorted bytewise, each once: all of them, or those of the list. Throws
-// Error when there is none, UsageError never. Names that could lead out of the folder are left out.
+// Names below `image_path`, sorted bytewise, each once: all pictures, or those of the list where
+// one is given. Names that could lead out of the folder are left out. Throws Error when there is no
+// such folder or list, or no name in it.
 std::vector<std::string> ListPictures(const std::filesystem::path& image_path,
                                       const std::string& image_list_path, RunReport* report);
 

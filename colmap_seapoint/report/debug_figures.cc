@@ -199,7 +199,8 @@ void DebugFigures::WriteRevived(const PairDebug& pair) const {
   const auto partial = Place(pair, pair.partial->partial);
   const Interpair ends(pair);
   Canvas left = BlackCanvas(pair);
-  // The mask is made of cells: a rim of their size is not drawn as hidden by the overlap.
+  // The densifier's mask is made of cells, so that a rim of their size is not hidden by the
+  // overlap.
   const double radius = std::max(0.0, pair.influence_radius1 - pair.known.grid.cell);
   const CanvasFrame& frame = left.Frame();
   const cv::Mat overlap = HullMask(frame, ends.All1()) | DiscMask(frame, ends.All1(), radius);
