@@ -21,7 +21,8 @@ bool Agree(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const FlowFilterO
   return a.dot(b) >= min_cos * norm_a * norm_b;
 }
 
-// The middle of the rectangle that holds all points: of the picture, as far as they tell.
+// The middle of the rectangle that holds all points: as near to the middle of the picture as they
+// can tell.
 Eigen::Vector2f MiddleOf(const std::vector<SeaPoint>& points) {
   Eigen::Vector2f low(points[0].x, points[0].y), high = low;
   for (const SeaPoint& point : points) {
@@ -46,7 +47,7 @@ std::vector<Eigen::Vector2f> FlowVectors(const std::vector<SeaPoint>& points1,
   return vectors;
 }
 
-// Paper 2.4, Figure 8.
+// The vote of the neighbours (paper 2.4, Figure 8).
 FeatureMatches KeepVoted(const std::vector<SeaPoint>& points1, const std::vector<SeaPoint>& points2,
                          const FeatureMatches& matches, double turn,
                          const FlowFilterOptions& options) {
@@ -65,7 +66,7 @@ FeatureMatches KeepVoted(const std::vector<SeaPoint>& points1, const std::vector
   return kept;
 }
 
-// Ours.
+// The second look at what the vote has kept (ours).
 FeatureMatches DropSlipped(const std::vector<SeaPoint>& points1,
                            const std::vector<SeaPoint>& points2, const FeatureMatches& matches,
                            const FlowFilterOptions& options) {

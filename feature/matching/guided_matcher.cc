@@ -31,8 +31,8 @@ struct Candidate {
   }
 };
 
-// Distance to the epipolar line (Sampson), pixels: on rays by E where the cameras are calibrated,
-// on pixels by F where not.
+// The distance to the epipolar line (Sampson) in pixels: on rays and by E where the cameras are
+// calibrated, on pixels and by F where they are not.
 class EpipolarError {
  public:
   EpipolarError(const Camera& camera1, const std::vector<SeaPoint>& points1, const Camera& camera2,
@@ -71,7 +71,7 @@ class EpipolarError {
   std::vector<Eigen::Vector3d> places1_, places2_;
 };
 
-// Which SeaPoints of a picture are matched already.
+// Tells which SeaPoints of the two pictures are matched already.
 struct Taken {
   Taken(const Features& features1, const Features& features2, const FeatureMatches& matches)
       : in1(features1.points.size(), 0), in2(features2.points.size(), 0) {
@@ -82,6 +82,47 @@ struct Taken {
 
   std::vector<uint8_t> in1, in2;
 };
+
+// Pairs of unmatched SeaPoints that lie where the flow and the epipolar line say, and look alike.
+std::vector<Candidate> FindCandidates(const Features& features1, const Features& features2,
+                                      const FeatureMatches& inliers, const EpipolarError& error,
+                                      const Taken& taken, const GuidedMatcherOptions& options) {
+  LocalFlow flow(features1.points, features2.points, inliers);
+  const std::vector<double> slips = flow.Slips();
+  SeaPointTree targets(features2.points);
+  std::vector<uint32_t> nearby;
+  std::vector<Candidate> candidates;
+  for (uint32_t i = 0; i < features1.points.size(); ++i) {
+    if (taken.in1[i]) continue;
+    const SeaPoint& point = features1.points[i];
+    const Eigen::Vector2d place = flow.Predict(point);
+    const double radius =
+        std::max(options.max_slip, options.max_slip_ratio * flow.UsualSlip(point, slips));
+    targets.Within(static_cast<float>(place.x()), static_cast<float>(place.y()),
+                   static_cast<float>(radius), &nearby);
+    for (const uint32_t j : nearby) {
+      if (taken.in2[j] || !(error(i, j) <= options.max_error)) continue;
+      const int distance = HammingDistance(features1.descriptors[i], features2.descriptors[j]);
+      if (distance <= options.max_distance) candidates.push_back({distance, i, j});
+    }
+  }
+  return candidates;
+}
+
+// One-to-one, the smallest distance first. Sorted by idx1.
+FeatureMatches ChooseNearest(std::vector<Candidate> candidates, Taken taken) {
+  std::sort(candidates.begin(), candidates.end());
+  FeatureMatches chosen;
+  for (const Candidate& candidate : candidates) {
+    const FeatureMatch match = {candidate.idx1, candidate.idx2};
+    if (taken.Holds(match)) continue;
+    taken.Take(match);
+    chosen.push_back(match);
+  }
+  std::sort(chosen.begin(), chosen.end(),
+            [](const FeatureMatch& a, const FeatureMatch& b) { return a.idx1 < b.idx1; });
+  return chosen;
+}
 
 }  // namespace
 
@@ -111,37 +152,9 @@ FeatureMatches MatchGuided(const Camera& camera1, const Features& features1, con
     return {};
   }
   const EpipolarError error(camera1, features1.points, camera2, features2.points, geometry);
-  Taken taken(features1, features2, matches);
-  LocalFlow flow(features1.points, features2.points, geometry.inliers);
-  const std::vector<double> slips = flow.Slips();
-  SeaPointTree targets(features2.points);
-  std::vector<uint32_t> nearby;
-  std::vector<Candidate> candidates;
-  for (uint32_t i = 0; i < features1.points.size(); ++i) {
-    if (taken.in1[i]) continue;
-    const SeaPoint& point = features1.points[i];
-    const Eigen::Vector2d place = flow.Predict(point);
-    const double radius =
-        std::max(options.max_slip, options.max_slip_ratio * flow.UsualSlip(point, slips));
-    targets.Within(static_cast<float>(place.x()), static_cast<float>(place.y()),
-                   static_cast<float>(radius), &nearby);
-    for (const uint32_t j : nearby) {
-      if (taken.in2[j] || !(error(i, j) <= options.max_error)) continue;
-      const int distance = HammingDistance(features1.descriptors[i], features2.descriptors[j]);
-      if (distance <= options.max_distance) candidates.push_back({distance, i, j});
-    }
-  }
-  std::sort(candidates.begin(), candidates.end());
-  FeatureMatches added;
-  for (const Candidate& candidate : candidates) {
-    const FeatureMatch match = {candidate.idx1, candidate.idx2};
-    if (taken.Holds(match)) continue;
-    taken.Take(match);
-    added.push_back(match);
-  }
-  std::sort(added.begin(), added.end(),
-            [](const FeatureMatch& a, const FeatureMatch& b) { return a.idx1 < b.idx1; });
-  return added;
+  const Taken taken(features1, features2, matches);
+  return ChooseNearest(
+      FindCandidates(features1, features2, geometry.inliers, error, taken, options), taken);
 }
 
 }  // namespace colmap_seapoint

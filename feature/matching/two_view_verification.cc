@@ -68,7 +68,7 @@ Eigen::Matrix3d ToEigen(const cv::Mat& matrix) {
   return result;
 }
 
-// Sampson error of x2' [t]x R x1, in units of the normalised image plane.
+// The Sampson error of x2' [t]x R x1, in units of the normalised image plane.
 struct SampsonError {
   Eigen::Vector3d ray1, ray2;
 
@@ -109,7 +109,7 @@ void RefinePose(const Correspondences& all, const std::vector<uint8_t>& mask, do
   pose->rotation.normalize();
 }
 
-// Essential matrix of the inliers -> relative pose with unit translation, refined.
+// From the essential matrix of the inliers to the relative pose with unit translation, refined.
 std::optional<Rigid3d> RelativePose(const Correspondences& all, const std::vector<uint8_t>& inliers,
                                     double max_error) {
   if (!all.has_rays) return std::nullopt;
