@@ -291,8 +291,9 @@ TEST_F(Extract, ASecondChanceIsMoreLevels) {
 TEST_F(Extract, KeypointsOfOtherSoftwareAreRefusedBeforeAnythingIsWritten) {
   Run();
   ExecuteSql(DatabasePath(), "DELETE FROM seapoint_descriptors WHERE image_id = 3");
-  ExecuteSql(DatabasePath(), "UPDATE keypoints SET rows = 1, cols = 2, data = x'0000803f00008040' "
-                             "WHERE image_id = 3");
+  ExecuteSql(DatabasePath(),
+             "UPDATE keypoints SET rows = 1, cols = 2, data = x'0000803f00008040' "
+             "WHERE image_id = 3");
   WriteImage(Images() / "img0.png", StripPicture(0));
   const auto before = ReadTables(DatabasePath());
   EXPECT_ERROR(Run(), "holds keypoints of other software for img3.png");

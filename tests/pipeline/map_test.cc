@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using Options = AutomaticReconstructorOptions;
 
 // A COLMAP that knows the options of 4.0, and does nothing.
-constexpr char kColmap4[] = R"(#!/bin/sh
+constexpr char kColmap4[] = R"sh(#!/bin/sh
 case "$1 $2" in
   "mapper -h")
     echo "COLMAP 4.0 (a test)"
@@ -29,7 +29,7 @@ case "$1 $2" in
   "global_mapper -h") printf '  --GlobalMapper.num_threads arg\n  --GlobalMapper.random_seed arg\n' ;;
   "help ") printf 'Available commands:\n  mapper\n  global_mapper\n' ;;
 esac
-)";
+)sh";
 
 class PlanMappingTest : public StripSurvey {
  protected:

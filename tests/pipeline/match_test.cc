@@ -125,8 +125,18 @@ TEST_F(Match, FurtherPairsMustShareMore) {
 
 TEST_F(Match, LoopsAreAddedToTheSequence) {
   // There and back again.
-  Extract({{"img01", 1}, {"img02", 2}, {"img03", 3}, {"img04", 4}, {"img05", 5}, {"img06", 6},
-           {"img07", 6}, {"img08", 5}, {"img09", 4}, {"img10", 3}, {"img11", 2}, {"img12", 1}});
+  Extract({{"img01", 1},
+           {"img02", 2},
+           {"img03", 3},
+           {"img04", 4},
+           {"img05", 5},
+           {"img06", 6},
+           {"img07", 6},
+           {"img08", 5},
+           {"img09", 4},
+           {"img10", 3},
+           {"img11", 2},
+           {"img12", 1}});
   ColmapDatabase database = OpenDatabase();
   SequentialMatcherOptions options = Sequential(1);
   options.pairs.loop_detection = true;
@@ -156,15 +166,13 @@ TEST_F(Match, SpatialTriesTheNearest) {
 
 TEST_F(Match, SpatialLeavesOutWhatHasNoPlace) {
   ASSERT_NO_FATAL_FAILURE(ExtractPicturesOf(3));
-  const SpatialMatcherOptions options =
-      Spatial("image,x,y,z\nimg1.png,0,0,0\nimg2.png,1,0,0\n");
+  const SpatialMatcherOptions options = Spatial("image,x,y,z\nimg1.png,0,0,0\nimg2.png,1,0,0\n");
   EXPECT_FALSE(RunSpatialMatcher(options).is_complete);
   EXPECT_EQ(Rows(), (Pairs{{1, 2}}));
   ColmapDatabase database = OpenDatabase();
   const RunReport report = MatchSpatially(options, &database);
   EXPECT_EQ(NamesOf(report.left_out), std::vector<std::string>{"img3.png"});
-  EXPECT_ERROR(MatchSpatially(Spatial("image,x,y,z\nother.png,0,0,0\n"), &database),
-               "survey.db");
+  EXPECT_ERROR(MatchSpatially(Spatial("image,x,y,z\nother.png,0,0,0\n"), &database), "survey.db");
 }
 
 TEST_F(Match, TheSameAgainHasNothingToDo) {
@@ -185,8 +193,9 @@ TEST_F(Match, OnlyPairsWithoutARowAreMatched) {
   ASSERT_NO_FATAL_FAILURE(MatchPicturesOf(3));
   const auto whole = ReadTables(DatabasePath());
   for (const char* table : {"matches", "two_view_geometries"}) {
-    ExecuteSql(DatabasePath(), std::string("DELETE FROM ") + table + " WHERE pair_id % 2147483647 "
-                                                                     "= 3");
+    ExecuteSql(DatabasePath(), std::string("DELETE FROM ") + table +
+                                   " WHERE pair_id % 2147483647 "
+                                   "= 3");
   }
   ASSERT_EQ(Rows(), (Pairs{{1, 2}}));
   const std::string log = LogOf([&] { RunExhaustiveMatcher(MatcherOptions()); });

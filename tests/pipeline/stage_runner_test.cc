@@ -124,7 +124,7 @@ TEST_F(StageRunner, AMovedWorkspaceIsStillDone) {
 TEST_F(StageRunner, ADamagedRecordIsNone) {
   EXPECT_EQ(Run(), 1);
   const std::string whole = ReadBytes(Path() / "state/stage.json");
-  const std::string damaged[] = {"",   "{",       "[]",      "null",
+  const std::string damaged[] = {"",   "{",        "[]",       "null",
                                  "{}", "\"text\"", "\xff\xfe", whole.substr(0, whole.size() / 2)};
   int expected = 1;
   for (const std::string& bytes : damaged) {

@@ -184,13 +184,13 @@ TEST_F(WorkspaceDatabase, FingerprintIsOfPicturesCamerasAndSeaPoints) {
   ExecuteSql(Path(), "DELETE FROM matches");
   EXPECT_EQ(fingerprint(), first);
   std::set<std::string> seen = {first};
-  for (const char* change : {"UPDATE images SET name = 'renamed.png' WHERE image_id = 2",
-                             "UPDATE cameras SET prior_focal_length = 1",
-                             "UPDATE cameras SET width = width + 1",
-                             "UPDATE cameras SET params = x'0000000000007940' || "
-                             "substr(params, 9)",
-                             "DELETE FROM seapoint_descriptors WHERE image_id = 1",
-                             "DELETE FROM images WHERE image_id = 3"}) {
+  for (const char* change :
+       {"UPDATE images SET name = 'renamed.png' WHERE image_id = 2",
+        "UPDATE cameras SET prior_focal_length = 1", "UPDATE cameras SET width = width + 1",
+        "UPDATE cameras SET params = x'0000000000007940' || "
+        "substr(params, 9)",
+        "DELETE FROM seapoint_descriptors WHERE image_id = 1",
+        "DELETE FROM images WHERE image_id = 3"}) {
     ExecuteSql(Path(), change);
     EXPECT_TRUE(seen.insert(fingerprint()).second) << change;
   }
