@@ -96,7 +96,7 @@ std::string DatabaseFingerprint(const ColmapDatabase& database) {
     hash.Add(numbers, sizeof(numbers));
     hash.Add(camera.params.data(), camera.params.size() * sizeof(double));
   }
-  return hash.Hex();
+  return hash.Text();
 }
 
 }  // namespace colmap_seapoint

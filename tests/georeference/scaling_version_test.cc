@@ -83,7 +83,7 @@ std::string AllEstimates() {
 }
 
 constexpr char kVersionOfTheHash[] = "1";  // to be raised together with the hash
-constexpr char kHash[] = "50eb52445162a88c";
+constexpr char kHash[] = "xxh3-50eb52445162a88c";
 
 TEST(ScalingVersionTest, TheSameSimilaritiesAsWhenTheVersionWasGiven) {
   EXPECT_STREQ(kScalingVersion, kVersionOfTheHash);
