@@ -117,8 +117,8 @@ Radial<T> RadialFactor(CameraModel model, const T* p, const T& s) {
   return {T(1), T(0)};
 }
 
-// What is added to a point: by decentred lenses (Brown's p1, p2), and by tilted ones, of the
-// squared radius (s1) and of its square (s2).
+// The shift that a lens adds to a point: by decentred lenses (Brown's p1, p2), and by tilted ones,
+// of the squared radius (s1) and of its square (s2).
 template <typename T>
 struct Aside {
   using Vector2 = Eigen::Matrix<T, 2, 1>;

@@ -12,6 +12,17 @@
 #include "colmap_seapoint/io/image/image_file.h"
 
 namespace colmap_seapoint {
+namespace {
+
+// Why a picture of this size does not belong to its camera, or "".
+std::string SizeProblem(const Camera& camera, int width, int height) {
+  if (width == camera.width && height == camera.height) return "";
+  return "is " + std::to_string(width) + "x" + std::to_string(height) +
+         " but its camera in the model is " + std::to_string(camera.width) + "x" +
+         std::to_string(camera.height) + ", of other proportions";
+}
+
+}  // namespace
 
 ModelPictures::ModelPictures(const SparseModel& model, const std::filesystem::path& image_path,
                              ColmapDatabase* database, const SeaPointExtractionOptions& extraction,
@@ -51,18 +62,10 @@ std::filesystem::path ModelPictures::PathOf(int image_idx) const {
   return image_path_ / name;
 }
 
-std::string ModelPictures::CheckSize(int image_idx, int width, int height) const {
-  const Camera& camera = model_.cameras.at(ImageAt(image_idx).camera_id);
-  if (width == camera.width && height == camera.height) return "";
-  return "is " + std::to_string(width) + "x" + std::to_string(height) +
-         " but its camera in the model is " + std::to_string(camera.width) + "x" +
-         std::to_string(camera.height) + ", of other proportions";
-}
-
 std::string ModelPictures::Check(int image_idx) const {
   try {
     const ImageInfo info = ReadImageInfo(PathOf(image_idx));
-    return CheckSize(image_idx, info.width, info.height);
+    return SizeProblem(model_.cameras.at(ImageAt(image_idx).camera_id), info.width, info.height);
   } catch (const Error& error) {
     return error.Finding();
   }
@@ -85,7 +88,8 @@ Picture ModelPictures::ReadPicture(int image_idx) {
     if (!described) described = {ImageAt(image_idx).name, file.Size(), file.Hash()};
   }
   Picture picture = file.Decode();
-  const std::string problem = CheckSize(image_idx, picture.luma.width, picture.luma.height);
+  const std::string problem = SizeProblem(model_.cameras.at(ImageAt(image_idx).camera_id),
+                                          picture.luma.width, picture.luma.height);
   if (problem.empty()) return picture;
   throw Error(PathOf(image_idx).string(), problem,
               "give the pictures that the model was made from, reduced or in full");

@@ -53,8 +53,6 @@ class ModelPictures : public PictureSource {
 
   const PosedImage& ImageAt(int image_idx) const;
   std::filesystem::path PathOf(int image_idx) const;
-  // Why a picture of this size does not belong to its camera, or "".
-  std::string CheckSize(int image_idx, int width, int height) const;
   // Whether the database has SeaPoints of ours that ReadSeaPoints can return.
   bool HasStoredSeaPoints(int image_idx);
 

@@ -35,7 +35,7 @@ PictureCache::PendingPicture PictureCache::Start(int image_idx) {
     *num_bytes = picture->NumBytes();
     return picture;
   };
-  PendingPicture pending = std::async(std::launch::async, read).share();
+  PendingPicture pending = std::async(read).share();
   pictures_.push_back({image_idx, num_bytes, pending});
   return pending;
 }

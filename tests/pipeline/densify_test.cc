@@ -8,6 +8,7 @@
 
 #include "colmap_seapoint/io/cloud/ply.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/io/files/model_units.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "tests/expect_error.h"
@@ -116,7 +117,7 @@ TEST_F(DensifyModelTest, SeaPointsOfTheDatabaseAreTaken) {
   // Without a verified pair there, there is none here.
   for (uint32_t id1 = 1; id1 <= kNumPictures; ++id1) {
     for (uint32_t id2 = id1 + 1; id2 <= kNumPictures; ++id2) {
-      database.WriteMatches(id1, id2, {}, TwoViewGeometry());
+      WriteMatches(&database, id1, id2, {}, TwoViewGeometry());
     }
   }
   EXPECT_EQ(DensifyModel(options, &database).points, 0);

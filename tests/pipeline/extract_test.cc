@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "colmap_seapoint/io/colmap/database_features.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "tests/cli/database_tables.h"
 #include "tests/expect_error.h"
@@ -33,7 +35,7 @@ class Extract : public StripSurvey {
 
   Features FeaturesOf(const std::string& name) const {
     const ColmapDatabase database = OpenDatabase();
-    const auto features = database.ReadFeatures(ImageIds(database).at(name));
+    const auto features = ReadFeatures(database, ImageIds(database).at(name));
     EXPECT_TRUE(features.has_value()) << name;
     return features.value_or(Features());
   }
@@ -41,7 +43,7 @@ class Extract : public StripSurvey {
     std::map<std::string, std::string> fingerprints;
     const ColmapDatabase database = OpenDatabase();
     for (const auto& [name, id] : ImageIds(database)) {
-      fingerprints[name] = database.FeaturesFingerprint(id).value_or("none");
+      fingerprints[name] = FeaturesFingerprint(database, id).value_or("none");
     }
     return fingerprints;
   }
@@ -60,10 +62,10 @@ class Extract : public StripSurvey {
   void Mark(const std::string& name) const {
     ColmapDatabase database = OpenDatabase();
     const uint32_t id = ImageIds(database).at(name);
-    Features one = *database.ReadFeatures(id);
+    Features one = *ReadFeatures(database, id);
     one.points.resize(1);
     one.descriptors.resize(1);
-    database.WriteFeatures(id, one, *database.FeaturesFingerprint(id));
+    WriteFeatures(&database, id, one, *FeaturesFingerprint(database, id));
   }
   bool IsMarked(const std::string& name) const { return FeaturesOf(name).points.size() == 1; }
 };
@@ -166,9 +168,9 @@ TEST_F(Extract, AChangedPictureAloneIsExtractedAgainAndLosesItsMatches) {
   EXPECT_TRUE(IsMarked("img2.png"));
   const ColmapDatabase database = OpenDatabase();
   const auto ids = ImageIds(database);
-  EXPECT_TRUE(database.HasMatches({ids.at("img1.png"), ids.at("img2.png")}));
-  EXPECT_FALSE(database.HasMatches({ids.at("img1.png"), ids.at("img3.png")}));
-  EXPECT_FALSE(database.HasMatches({ids.at("img2.png"), ids.at("img3.png")}));
+  EXPECT_TRUE(HasMatches(database, {ids.at("img1.png"), ids.at("img2.png")}));
+  EXPECT_FALSE(HasMatches(database, {ids.at("img1.png"), ids.at("img3.png")}));
+  EXPECT_FALSE(HasMatches(database, {ids.at("img2.png"), ids.at("img3.png")}));
 }
 
 TEST_F(Extract, AChangedOptionExtractsAllAgain) {

@@ -7,6 +7,8 @@
 #include <set>
 #include <utility>
 
+#include "colmap_seapoint/io/colmap/database_features.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "tests/cli/database_tables.h"
 #include "tests/expect_error.h"
@@ -56,7 +58,7 @@ class Match : public StripSurvey {
     return pairs;
   }
   Pairs Verified() const {
-    const auto pairs = OpenDatabase().ReadVerifiedPairs();
+    const auto pairs = ReadVerifiedPairs(OpenDatabase());
     return {pairs.begin(), pairs.end()};
   }
 };
@@ -82,9 +84,9 @@ TEST_F(Match, ExhaustiveTriesEveryPair) {
 TEST_F(Match, MatchesShiftByTheStep) {
   ASSERT_NO_FATAL_FAILURE(MatchPicturesOf(2));
   const ColmapDatabase database = OpenDatabase();
-  const auto geometry = database.ReadTwoViewGeometry({1, 2});
+  const auto geometry = ReadTwoViewGeometry(database, {1, 2});
   ASSERT_GT(geometry.inliers.size(), 100u);
-  const Features first = *database.ReadFeatures(1), second = *database.ReadFeatures(2);
+  const Features first = *ReadFeatures(database, 1), second = *ReadFeatures(database, 2);
   for (const FeatureMatch& match : geometry.inliers) {
     EXPECT_NEAR(first.points[match.idx1].x - second.points[match.idx2].x, kStripStep, 0.5);
     EXPECT_NEAR(first.points[match.idx1].y - second.points[match.idx2].y, 0, 0.5);

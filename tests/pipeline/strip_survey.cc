@@ -2,6 +2,8 @@
 
 #include <cstdlib>
 
+#include "colmap_seapoint/io/colmap/database_images.h"
+
 namespace colmap_seapoint {
 namespace {
 
@@ -89,7 +91,7 @@ std::string LogOf(const std::function<void()>& call) {
 
 std::map<std::string, uint32_t> ImageIds(const ColmapDatabase& database) {
   std::map<std::string, uint32_t> ids;
-  for (const DatabaseImage& image : database.ReadImages()) ids[image.name] = image.image_id;
+  for (const DatabaseImage& image : ReadImages(database)) ids[image.name] = image.image_id;
   return ids;
 }
 

@@ -4,6 +4,8 @@
 
 #include <set>
 
+#include "colmap_seapoint/io/colmap/database_features.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/files/run_report_json.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "tests/cli/database_tables.h"
@@ -49,7 +51,7 @@ class WorkspaceDatabase : public StripSurvey {
 
 TEST_F(WorkspaceDatabase, IsCreated) {
   const ColmapDatabase database = Open("a");
-  EXPECT_TRUE(database.ReadImages().empty());  // registering them is the extraction's
+  EXPECT_TRUE(ReadImages(database).empty());  // registering them is the extraction's
   EXPECT_TRUE(fs::exists(Root() / "state/database.json"));
 }
 
@@ -57,7 +59,7 @@ TEST_F(WorkspaceDatabase, IsKeptAsLongAsTheStageIsTheSame) {
   OpenAndFill("a");
   const auto before = Tables();
   ASSERT_EQ(before.at("two_view_geometries").size(), 3u);
-  const std::string log = LogOf([&] { EXPECT_EQ(Open("a").ReadImages().size(), 3u); });
+  const std::string log = LogOf([&] { EXPECT_EQ(ReadImages(Open("a")).size(), 3u); });
   EXPECT_EQ(log.find("begun anew"), std::string::npos) << log;
   EXPECT_EQ(Tables(), before);
 }
@@ -88,7 +90,7 @@ TEST_F(WorkspaceDatabase, OtherOptionsGiveOtherCameras) {
   reader.camera_model = "SIMPLE_RADIAL";
   reader.single_camera_per_folder = false;
   const ColmapDatabase database = Open("b", reader);
-  const auto cameras = database.ReadCameras();
+  const auto cameras = ReadCameras(database);
   EXPECT_EQ(cameras.size(), 3u);
   for (const auto& [id, camera] : cameras) EXPECT_EQ(camera.model, CameraModel::kSimpleRadial);
   EXPECT_EQ(Tables().at("keypoints"), before.at("keypoints"));
@@ -98,7 +100,7 @@ TEST_F(WorkspaceDatabase, FollowsThePicturesThatAreThere) {
   OpenAndFill("a");
   const ColmapDatabase before = Open("a");
   const auto old_ids = ImageIds(before);
-  const auto old_features = before.ReadFeatures(old_ids.at("img2.png"));
+  const auto old_features = ReadFeatures(before, old_ids.at("img2.png"));
   ASSERT_TRUE(old_features.has_value());
   fs::remove(Images() / "img1.png");
   WriteImage(Images() / "img9.png", StripPicture(9));
@@ -106,13 +108,13 @@ TEST_F(WorkspaceDatabase, FollowsThePicturesThatAreThere) {
   const auto ids = ImageIds(after);
   ASSERT_EQ(ids.size(), 3u);
   EXPECT_EQ(ids.count("img1.png"), 0u);
-  EXPECT_FALSE(after.HasFeatures(ids.at("img9.png")));
+  EXPECT_FALSE(HasFeatures(after, ids.at("img9.png")));
   EXPECT_NE(ids.at("img2.png"), old_ids.at("img2.png"));  // ids are those of a fresh run
-  const auto features = after.ReadFeatures(ids.at("img2.png"));
+  const auto features = ReadFeatures(after, ids.at("img2.png"));
   ASSERT_TRUE(features.has_value());
   EXPECT_EQ(features->descriptors, old_features->descriptors);
-  EXPECT_EQ(after.FeaturesFingerprint(ids.at("img2.png")),
-            before.FeaturesFingerprint(old_ids.at("img2.png")));
+  EXPECT_EQ(FeaturesFingerprint(after, ids.at("img2.png")),
+            FeaturesFingerprint(before, old_ids.at("img2.png")));
 }
 
 TEST_F(WorkspaceDatabase, OfOtherPicturesAltogether) {
@@ -124,7 +126,7 @@ TEST_F(WorkspaceDatabase, OfOtherPicturesAltogether) {
   ASSERT_EQ(ids.size(), 2u);
   for (const auto& [name, id] : ids) {
     EXPECT_EQ(name.rfind("other", 0), 0u) << name;
-    EXPECT_FALSE(database.HasFeatures(id)) << name;
+    EXPECT_FALSE(HasFeatures(database, id)) << name;
   }
   EXPECT_EQ(Tables().at("keypoints").size(), 0u);
 }
@@ -160,16 +162,16 @@ TEST_F(WorkspaceDatabase, OneOfAnOlderVersionIsOurs) {
 TEST_F(WorkspaceDatabase, GoesOnAfterItWasTakenAway) {
   OpenAndFill("a");
   fs::remove(Path());
-  EXPECT_TRUE(Open("a").ReadImages().empty());
+  EXPECT_TRUE(ReadImages(Open("a")).empty());
   fs::remove(Path());
-  EXPECT_TRUE(Open("b").ReadImages().empty());
+  EXPECT_TRUE(ReadImages(Open("b")).empty());
 }
 
 TEST_F(WorkspaceDatabase, LeftoversOfAKilledRunAreReplaced) {
   OpenAndFill("a");
   WriteBytes(Path().string() + ".tmp", "half a database");
   WriteBytes(Path().string() + ".tmp-journal", "and its journal");
-  EXPECT_EQ(Open("b").ReadImages().size(), 3u);
+  EXPECT_EQ(ReadImages(Open("b")).size(), 3u);
   EXPECT_FALSE(fs::exists(Path().string() + ".tmp"));
   EXPECT_FALSE(fs::exists(Path().string() + ".tmp-journal"));
 }

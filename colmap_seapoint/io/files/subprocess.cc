@@ -157,7 +157,7 @@ void WriteLog(int log, const std::filesystem::path& path, const char* data, size
   }
 }
 
-// Until every holder of the pipe's other end is gone.
+// Reads until every holder of the pipe's other end is gone.
 void CopyOutput(int input, int log, const std::filesystem::path& log_path,
                 const std::function<void(const std::string&)>& on_line) {
   std::string line;

@@ -1,4 +1,5 @@
-// Pictures on disk: listing, size and EXIF without decoding, decoding to grey and to colour.
+// Pictures on disk: listing them, size and EXIF without decoding, hash and pixels from one reading,
+// writing.
 #pragma once
 
 #include <cstdint>
@@ -64,7 +65,7 @@ class PictureFile {
   std::vector<uint8_t> bytes_;
 };
 
-// Of a PictureFile that nobody keeps.
+// For a picture whose file nobody keeps: PictureFile(path).DecodeGray() and so on.
 GrayImage ReadGrayImage(const std::filesystem::path& path);
 Picture ReadPicture(const std::filesystem::path& path);
 ColorImage ReadColorImage(const std::filesystem::path& path);

@@ -192,7 +192,7 @@ Image<uint8_t> DecodeInColor(const std::filesystem::path& path, const ImageSize&
   }
 }
 
-// Without upsampling and colour conversion, half of a decoder's work.
+// Leaves out upsampling and colour conversion, half of a decoder's work.
 Picture DecodeAsStored(const std::filesystem::path& path, const ImageSize& size,
                        JpegDecoder* decoder) {
   if (!Start(decoder, JCS_YCbCr, true)) ThrowDamagedImage(path, decoder->errors.message);

@@ -39,6 +39,7 @@ class MemoryPictures : public PictureSource {
   double MatchCpuSeconds() const { return 1e-9 * static_cast<double>(match_nanoseconds_); }
 
  private:
+  std::optional<ColmapDatabase> database_;
   ModelPictures source_;
   bool dropped_ = false;
   std::vector<Picture> pictures_;
