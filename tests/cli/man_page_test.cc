@@ -54,7 +54,7 @@ class ManPage : public testing::Test {
     const size_t begin = page.find(title);
     EXPECT_NE(begin, std::string::npos) << title << page;
     if (begin == std::string::npos) return "";
-    return page.substr(begin, page.find("\n.S", begin + 1) - begin);
+    return page.substr(begin, page.find("\n.S", begin + 1) + 1 - begin);
   }
   Values values_;
 };

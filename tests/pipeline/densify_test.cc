@@ -114,10 +114,12 @@ TEST_F(DensifyModelTest, SeaPointsOfTheDatabaseAreTaken) {
   log = LogOf([&] { report = DensifyModel(options, &database); });
   EXPECT_EQ(log.find("holds SeaPoints of no picture"), std::string::npos) << log;
   EXPECT_GT(report.points, 3000);
-  // Without a verified pair there, there is none here.
+  // Pairs that were tried there in vain are not tried again.
+  TwoViewGeometry unverified;
+  unverified.config = TwoViewConfig::kDegenerate;
   for (uint32_t id1 = 1; id1 <= kNumPictures; ++id1) {
     for (uint32_t id2 = id1 + 1; id2 <= kNumPictures; ++id2) {
-      WriteMatches(&database, id1, id2, {}, TwoViewGeometry());
+      WriteMatches(&database, id1, id2, {}, unverified);
     }
   }
   EXPECT_EQ(DensifyModel(options, &database).points, 0);
@@ -146,7 +148,7 @@ TEST_F(DensifyModelTest, UnreadablePicturesAreNamed) {
 
 TEST_F(DensifyModelTest, ForeignPicturesAreSeenBeforeTheWork) {
   fs::remove_all(Images());
-  WriteImage(Images() / "a.png", StripPicture(1));
+  WriteStrip(Images(), 1, "a");
   const std::string error = ErrorOf([&] { DensifyModel(Options(), nullptr); });
   EXPECT_NE(error.find("none of the model's 4 pictures can be used (img1.png: "), std::string::npos)
       << error;

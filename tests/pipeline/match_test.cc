@@ -114,8 +114,44 @@ TEST_F(Match, TheSequenceIsInNaturalOrder) {
   EXPECT_EQ(Verified(), Rows());
 }
 
+// Another place, into which a corner of the first picture is copied: both show it, but for all that
+// they would have to share where it fits, they share little.
+ColorImage PictureWithACorner() {
+  constexpr int kSide = 120;
+  ColorImage picture = StripPicture(20);
+  const ColorImage first = StripPicture(1);
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      for (int c = 0; c < 3; ++c) picture.At(x, y, c) = first.At(x, y, c);
+    }
+  }
+  return picture;
+}
+
 // The next picture is the track itself; one further on must earn its place.
 TEST_F(Match, FurtherPairsMustShareMore) {
+  Extract({{"img1", 1}, {"img3", 2}});
+  WriteImage(Images() / "img2.png", PictureWithACorner());
+  RunFeatureExtractor(ExtractorOptions());
+  ColmapDatabase database = OpenDatabase();
+  const auto ids = ImageIds(database);
+  const ImagePair pair = {ids.at("img1.png"), ids.at("img2.png")};
+  MatchSequentially(Sequential(1), &database);
+  EXPECT_EQ(Verified().count(pair), 1u);
+  ASSERT_GE(database.ReadTwoViewGeometry(pair).inliers.size(), 30u);  // as further pairs need
+  // The same two, with a picture between them in the sequence; or tried for being there at all.
+  for (const bool is_exhaustive : {false, true}) {
+    ExecuteSql(DatabasePath(), "DELETE FROM matches");
+    ExecuteSql(DatabasePath(), "DELETE FROM two_view_geometries");
+    ExecuteSql(DatabasePath(), "UPDATE images SET name = 'img4.png' WHERE name = 'img2.png'");
+    is_exhaustive ? MatchExhaustively(MatcherOptions(), &database)
+                  : MatchSequentially(Sequential(2), &database);
+    EXPECT_EQ(Rows().count(pair), 1u) << is_exhaustive;
+    EXPECT_EQ(Verified().count(pair), 0u) << is_exhaustive;
+  }
+}
+
+TEST_F(Match, EveryPictureIsTriedWithThoseBehindIt) {
   ASSERT_NO_FATAL_FAILURE(ExtractPicturesOf(6));
   ColmapDatabase database = OpenDatabase();
   MatchSequentially(Sequential(5), &database);

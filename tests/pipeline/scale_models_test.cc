@@ -205,6 +205,17 @@ TEST_F(ScaleModelsTest, ModelsThatAreNotFoundAnyMoreGo) {
   EXPECT_FALSE(fs::exists(Space().scaled / "2"));
 }
 
+// Between two models that were scaled, one could not be.
+TEST_F(ScaleModelsTest, WithoutSourcesTheFolderGoesWhateverFailedInIt) {
+  std::vector<ModelSummary> models = WriteModels("abc");
+  EXPECT_EQ(NamesOf(Scale(Positions("ac"), &models).left_out),
+            std::vector<std::string>{"scale of sparse/1"});
+  ASSERT_TRUE(fs::exists(Space().scaled / "2/images.bin"));
+  models = WriteModels("abc");
+  Scale({}, &models);
+  EXPECT_FALSE(fs::exists(Space().scaled));
+}
+
 TEST_F(ScaleModelsTest, LeftOutIsWhatNoModelCouldUse) {
   const auto with_bar = [&](const std::string& marks) {
     ModelScalerOptions scaler = Positions("ab");
