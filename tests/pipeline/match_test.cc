@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "colmap_seapoint/io/colmap/database_features.h"
+#include "colmap_seapoint/io/colmap/database_loops.h"
 #include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "tests/cli/database_tables.h"
@@ -138,7 +139,7 @@ TEST_F(Match, FurtherPairsMustShareMore) {
   const ImagePair pair = {ids.at("img1.png"), ids.at("img2.png")};
   MatchSequentially(Sequential(1), &database);
   EXPECT_EQ(Verified().count(pair), 1u);
-  ASSERT_GE(database.ReadTwoViewGeometry(pair).inliers.size(), 30u);  // as further pairs need
+  ASSERT_GE(ReadTwoViewGeometry(database, pair).inliers.size(), 30u);  // as further pairs need
   // The same two, with a picture between them in the sequence; or tried for being there at all.
   for (const bool is_exhaustive : {false, true}) {
     ExecuteSql(DatabasePath(), "DELETE FROM matches");
@@ -179,7 +180,7 @@ TEST_F(Match, LoopsAreAddedToTheSequence) {
   SequentialMatcherOptions options = Sequential(1);
   options.pairs.loop_detection = true;
   const RunReport report = MatchSequentially(options, &database);
-  const auto loops = database.ReadLoopPairs();
+  const auto loops = ReadLoopPairs(database);
   Pairs expected(loops.begin(), loops.end());
   EXPECT_EQ(expected.count({3, 10}), 1u);
   for (uint32_t id = 1; id < 12; ++id) expected.insert({id, id + 1});
