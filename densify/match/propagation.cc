@@ -68,6 +68,15 @@ class WindowMatcher {
   const int size_, half_, column_shift_, row_shift_;
 };
 
+template <typename Visit>
+void ForEachNeighbor(const SampleGrid& grid, int node, const Visit& visit) {
+  const int a = node % grid.width, b = node / grid.width;
+  if (b > 0) visit(node - grid.width);
+  if (a > 0) visit(node - 1);
+  if (a + 1 < grid.width) visit(node + 1);
+  if (b + 1 < grid.height) visit(node + grid.width);
+}
+
 class Propagation {
  public:
   Propagation(const RectPicture& picture1, const RectPicture& picture2, const Gate& gate,
@@ -127,21 +136,12 @@ class Propagation {
 
   const Candidate& HeldBy(int node) const { return nodes_[static_cast<size_t>(node)].held; }
 
-  template <typename Visit>
-  void ForEachNeighbor(int node, const Visit& visit) const {
-    const int a = node % grid_.width, b = node / grid_.width;
-    if (b > 0) visit(node - grid_.width);
-    if (a > 0) visit(node - 1);
-    if (a + 1 < grid_.width) visit(node + 1);
-    if (b + 1 < grid_.height) visit(node + grid_.width);
-  }
-
   // Neighbours of the frontier that are free, or that another region holds at another disparity.
   std::vector<int> CollectTargets(int generation) {
     std::vector<int> targets;
     for (const int node : frontier_) {
       const int disparity = HeldBy(node).disparity;
-      ForEachNeighbor(node, [&](int neighbor) {
+      ForEachNeighbor(grid_, node, [&](int neighbor) {
         Node& target = nodes_[static_cast<size_t>(neighbor)];
         if (target.visited == generation) return;
         if (gate_[static_cast<size_t>(neighbor)] == Gate::kClosed) return;
@@ -171,7 +171,7 @@ class Propagation {
     std::array<int, 4 * (2 * kMaxSearch + 1)> disparities;
     int count = 0;
     const int held = HeldBy(target).disparity;
-    ForEachNeighbor(target, [&](int neighbor) {
+    ForEachNeighbor(grid_, target, [&](int neighbor) {
       const Node& node = nodes_[static_cast<size_t>(neighbor)];
       if (node.generation != generation) return;
       for (int d = node.held.disparity - search_; d <= node.held.disparity + search_; ++d) {

@@ -114,7 +114,7 @@ TEST_F(Program, EveryCommandDescribesItself) {
 
 TEST_F(Program, WrongUsageIsThrown) {
   EXPECT_USAGE_ERROR(RunProgram(Arguments{"help", "--format", "html"}),
-                     "--format text, man or bash");
+                     "--format text, man, bash or markdown");
   EXPECT_USAGE_ERROR(RunProgram(Arguments{"help", "me"}), "--format");
   EXPECT_USAGE_ERROR(RunProgram(Arguments{"dive"}), "'dive' is no command");
   EXPECT_USAGE_ERROR(RunProgram(Arguments{"feature_extractor"}), "required");

@@ -60,7 +60,7 @@ TEST_F(DensifyModelTest, WritesCloudTableUnitsAndReport) {
   ASSERT_EQ(report.inputs.size(), static_cast<size_t>(kNumPictures + 3));
   EXPECT_EQ(report.inputs[0].name, "img1.png");
   EXPECT_EQ(report.inputs[kNumPictures].name, (folder_ / "model/cameras.bin").string());
-  for (const RunReport::Input& input : report.inputs) EXPECT_EQ(input.hash.size(), 16u);
+  for (const RunReport::Input& input : report.inputs) EXPECT_EQ(input.hash.size(), 21u);
   const auto cloud = ReadCloud(folder_ / "out/fused.ply");
   EXPECT_EQ(static_cast<int64_t>(cloud.size()), report.points);
   EXPECT_GT(cloud.size(), 3000u);

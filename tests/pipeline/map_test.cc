@@ -183,7 +183,7 @@ class MapPicturesTest : public StripSurvey {
 TEST_F(MapPicturesTest, LeavesModelsOfAllMatchedPictures) {
   WorkspaceState state(Space().root);
   const Mapping mapping = Map(ReconstructorOptions(), &state);
-  EXPECT_EQ(mapping.fingerprint.size(), 16u);
+  EXPECT_EQ(mapping.fingerprint.size(), 21u);
   ASSERT_EQ(mapping.seconds.size(), 1u);
   EXPECT_EQ(mapping.seconds[0].name, "mapper");
   EXPECT_GT(mapping.seconds[0].wall_seconds, 0);

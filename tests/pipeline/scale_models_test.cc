@@ -90,7 +90,7 @@ TEST_F(ScaleModelsTest, EveryModelIsScaledBesideTheMappers) {
     EXPECT_EQ(model.units.rfind("metres, local", 0), 0u) << model.units;
     EXPECT_EQ(model.units_word, "metres");
     EXPECT_EQ(model.scaling.rfind("scale ", 0), 0u) << model.scaling;
-    EXPECT_EQ(model.scaling_fingerprint.size(), 16u);
+    EXPECT_EQ(model.scaling_fingerprint.size(), 21u);
   }
   EXPECT_NEAR(Spacing(0), 2, 1e-6);
   EXPECT_NEAR(Spacing(1), 2, 1e-6);
