@@ -6,17 +6,14 @@
 #include "feature/descriptor/rbrief_descriptor.h"
 #include "feature/descriptor/rbrief_pattern.h"
 #include "feature/descriptor/sift_descriptor.h"
+#include "feature/matching/flow_filter.h"
+#include "feature/matching/guided_matcher.h"
+#include "feature/matching/hamming_matcher.h"
 #include "feature/matching/picture_turn.h"
+#include "feature/matching/sift_matcher.h"
+#include "feature/matching/two_view_verification.h"
 
 namespace colmap_seapoint {
-
-void SeaPointMatchingOptions::Bind(OptionTable* table) {
-  hamming.Bind(table);
-  sift.Bind(table);
-  flow.Bind(table);
-  guided.Bind(table);
-  verification.Bind(table);
-}
 
 namespace {
 

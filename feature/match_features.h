@@ -8,28 +8,13 @@
 
 #include "colmap_seapoint/base/camera.h"
 #include "colmap_seapoint/base/features.h"
-#include "colmap_seapoint/base/options.h"
-#include "feature/matching/flow_filter.h"
-#include "feature/matching/guided_matcher.h"
-#include "feature/matching/hamming_matcher.h"
-#include "feature/matching/sift_matcher.h"
-#include "feature/matching/two_view_verification.h"
+#include "feature/matching/matching_options.h"
 
 namespace colmap_seapoint {
 
 // Raise it whenever the same SeaPoints and options give other matches than before, together with
 // the hashes in tests/feature/matching_version_test.cc.
 inline constexpr char kMatchingVersion[] = "4";
-
-struct SeaPointMatchingOptions {
-  HammingMatcherOptions hamming;
-  SiftMatcherOptions sift;
-  FlowFilterOptions flow;
-  GuidedMatcherOptions guided;
-  TwoViewVerificationOptions verification;
-
-  void Bind(OptionTable* table);
-};
 
 struct MatchedPair {
   FeatureMatches matches;  // one-to-one, flow-filtered and guided: COLMAP's `matches`

@@ -5,25 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "colmap_seapoint/base/options.h"
 #include "colmap_seapoint/base/run_options.h"
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/io/files/run_report.h"
+#include "colmap_seapoint/pairing/pair_options.h"
 
 namespace colmap_seapoint {
-
-// Each field's meaning, unit, legal range and origin: Bind(), in the .cc file.
-struct SpatialPairOptions {
-  int max_num_neighbors = 20;
-  double max_distance = 100;
-  bool ignore_z = true;
-  bool is_gps = true;
-  std::string positions_path;
-
-  void Bind(OptionTable* table);
-};
 
 struct PlacedImage {
   uint32_t image_id = 0;

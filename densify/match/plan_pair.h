@@ -8,16 +8,12 @@
 #include "colmap_seapoint/base/image.h"
 #include "colmap_seapoint/base/picture.h"
 #include "densify/match/cell_grid.h"
+#include "densify/match/densification_mode.h"
 #include "densify/match/rectification.h"
 #include "densify/match/sample_grid.h"
 #include "densify/match/view.h"
 
 namespace colmap_seapoint {
-
-enum class DensificationMode {
-  kPartial,   // only what is new
-  kComplete,  // all of picture 1: the paper's baseline (section 3)
-};
 
 // One pair as it comes from the sequence. The pictures are lent.
 struct PairInput {

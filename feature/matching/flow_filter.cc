@@ -85,24 +85,6 @@ FeatureMatches DropSlipped(const std::vector<SeaPoint>& points1,
 
 }  // namespace
 
-void FlowFilterOptions::Bind(OptionTable* table) {
-  const std::string group = "SeaPointMatching.";
-  table->Add(group + "flow_num_neighbors", &num_neighbors,
-             "nearest matches that vote on a match's vector", "ours", 1, 200);
-  table->Add(group + "flow_min_votes", &min_votes, "votes that a match needs", "ours", 0, 200);
-  table->Add(group + "flow_max_angle_deg", &max_angle_deg,
-             "largest difference of direction that still votes, degrees", "ours", 0, 180);
-  table->Add(group + "flow_max_norm_difference", &max_norm_difference,
-             "largest difference of norm that still votes, share of the larger norm", "ours", 0, 1);
-  table->Add(group + "flow_max_slip", &max_slip,
-             "largest deviation of a match from the flow around it, pixels", "ours", 0, 1000);
-  table->Add(group + "flow_max_slip_ratio", &max_slip_ratio,
-             "or, if that is more, times the median deviation of the matches around it", "ours", 0,
-             1000);
-  table->Add(group + "flow_min_tolerance", &min_tolerance,
-             "vectors nearer to each other than this always vote, pixels", "ours", 0, 1000);
-}
-
 FeatureMatches FilterFlow(const std::vector<SeaPoint>& points1,
                           const std::vector<SeaPoint>& points2, const FeatureMatches& matches,
                           double turn, const FlowFilterOptions& options) {

@@ -5,22 +5,9 @@
 #include <vector>
 
 #include "colmap_seapoint/base/features.h"
-#include "colmap_seapoint/base/options.h"
+#include "feature/matching/matching_options.h"
 
 namespace colmap_seapoint {
-
-// The paper gives the vote, not its numbers: these are ours. Legal ranges are in Bind().
-struct FlowFilterOptions {
-  int num_neighbors = 16;             // nearest matches that vote on a match
-  int min_votes = 4;                  // that a match needs
-  double max_angle_deg = 12;          // between the directions of vectors that vote for each other
-  double max_norm_difference = 0.12;  // share of the larger norm
-  double min_tolerance = 4;           // vectors this near always vote for each other, pixels
-  double max_slip = 1.5;              // from where the flow around it says the match is, pixels ...
-  double max_slip_ratio = 2.3;        // ... or times the median deviation there, if that is more
-
-  void Bind(OptionTable* table);
-};
 
 // Keeps the matches that at least min_votes of their num_neighbors nearest neighbours (in the first
 // picture, among the matches) vote for: direction within max_angle_deg and norm within

@@ -126,23 +126,6 @@ FeatureMatches ChooseNearest(std::vector<Candidate> candidates, Taken taken) {
 
 }  // namespace
 
-void GuidedMatcherOptions::Bind(OptionTable* table) {
-  const std::string group = "SeaPointMatching.";
-  table->Add(group + "guided", &enabled,
-             "look for unmatched SeaPoints where the verified matches around them say they are",
-             "ours");
-  table->Add(group + "guided_max_distance", &max_distance,
-             "largest Hamming distance of a guided match, of 256 bits", "ours", 0, 256);
-  table->Add(group + "guided_max_slip", &max_slip,
-             "largest distance of a guided match from where the flow says it is, pixels", "ours", 0,
-             1000);
-  table->Add(group + "guided_max_slip_ratio", &max_slip_ratio,
-             "or, if that is more, times the median deviation of the matches around it", "ours", 0,
-             1000);
-  table->Add(group + "guided_max_error", &max_error,
-             "largest distance of a guided match from its epipolar line, pixels", "ours", 0, 100);
-}
-
 FeatureMatches MatchGuided(const Camera& camera1, const Features& features1, const Camera& camera2,
                            const Features& features2, const FeatureMatches& matches,
                            const TwoViewGeometry& geometry, const GuidedMatcherOptions& options) {

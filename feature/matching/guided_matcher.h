@@ -6,20 +6,9 @@
 
 #include "colmap_seapoint/base/camera.h"
 #include "colmap_seapoint/base/features.h"
-#include "colmap_seapoint/base/options.h"
+#include "feature/matching/matching_options.h"
 
 namespace colmap_seapoint {
-
-// All ours; legal ranges are in Bind().
-struct GuidedMatcherOptions {
-  bool enabled = true;
-  int max_distance = 96;       // Hamming, of 256 bits
-  double max_slip = 1.5;       // from where the flow around it says the match is, pixels ...
-  double max_slip_ratio = 15;  // ... or times the median deviation there, if that is more
-  double max_error = 1.5;      // from the epipolar line, pixels
-
-  void Bind(OptionTable* table);
-};
 
 // Returns the pairs of SeaPoints to be added to geometry.inliers and to the pair's matches, which
 // hold neither of the two yet: sorted by idx1, one-to-one. Descriptors are compared as they are, so

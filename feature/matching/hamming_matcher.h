@@ -4,17 +4,9 @@
 #include <vector>
 
 #include "colmap_seapoint/base/features.h"
-#include "colmap_seapoint/base/options.h"
+#include "feature/matching/matching_options.h"
 
 namespace colmap_seapoint {
-
-// Ours; legal ranges are in Bind().
-struct HammingMatcherOptions {
-  int max_distance = 80;   // of 256 bits
-  double max_ratio = 1.0;  // of nearest to second nearest distance; 1 = no test
-
-  void Bind(OptionTable* table);
-};
 
 // Returns the number of bits that differ, 0 to 256.
 int HammingDistance(const Descriptor& a, const Descriptor& b);

@@ -4,19 +4,9 @@
 #include <vector>
 
 #include "colmap_seapoint/base/features.h"
-#include "colmap_seapoint/base/options.h"
+#include "feature/matching/matching_options.h"
 
 namespace colmap_seapoint {
-
-// COLMAP's own defaults are 0.7 and 0.8. Ours are others because the nearest by chance is rarely
-// less than 0.45 apart, and a ratio test of 0.85 costs a sixth of the verified matches and more:
-// the flow filter sorts out better. Legal ranges are in Bind().
-struct SiftMatcherOptions {
-  double max_distance = 0.4;  // angle between the descriptors, radians (ours)
-  double max_ratio = 1.0;     // of nearest to second nearest angle; 1 = no test (ours)
-
-  void Bind(OptionTable* table);
-};
 
 // Returns COLMAP's measure: the angle between the two in radians, their lengths taken as 512.
 double SiftDistance(const SiftDescriptor& a, const SiftDescriptor& b);

@@ -176,17 +176,6 @@ TwoViewConfig ConfigOf(const RobustModel& epipolar, const RobustModel& homograph
 
 }  // namespace
 
-void TwoViewVerificationOptions::Bind(OptionTable* table) {
-  const std::string group = "TwoViewGeometry.";
-  table->Add(group + "min_num_inliers", &min_num_inliers, "verified matches that a pair needs",
-             "COLMAP", 8, 100000);
-  table->Add(group + "max_error", &max_error, "largest epipolar or transfer error, pixels",
-             "COLMAP", 0.1, 100);
-  table->Add(group + "max_homography_ratio", &max_homography_ratio,
-             "share of inliers that a homography must explain for a pair to count as planar",
-             "COLMAP", 0, 1);
-}
-
 TwoViewGeometry VerifyTwoViews(const Camera& camera1, const std::vector<SeaPoint>& points1,
                                const Camera& camera2, const std::vector<SeaPoint>& points2,
                                const FeatureMatches& matches,

@@ -4,18 +4,9 @@
 
 #include "colmap_seapoint/base/camera.h"
 #include "colmap_seapoint/base/features.h"
-#include "colmap_seapoint/base/options.h"
+#include "feature/matching/matching_options.h"
 
 namespace colmap_seapoint {
-
-// COLMAP's defaults; legal ranges are in Bind().
-struct TwoViewVerificationOptions {
-  int min_num_inliers = 15;           // verified matches that a pair needs
-  double max_error = 4.0;             // epipolar or transfer error, pixels
-  double max_homography_ratio = 0.8;  // inliers of H for those of E or F, from which it is planar
-
-  void Bind(OptionTable* table);
-};
 
 // Verifies `matches`. The config is kDegenerate when fewer than min_num_inliers matches agree on
 // any model; else kPlanarOrPanoramic (H) when a homography explains max_homography_ratio of the
