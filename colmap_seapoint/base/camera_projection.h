@@ -128,7 +128,9 @@ struct Aside {
   Vector2 s1 = Vector2::Zero(), s2 = Vector2::Zero();
 
   Vector2 Of(const Vector2& w) const {
-    const T u = w.x(), v = w.y(), s = w.squaredNorm();
+    const T& u = w.x();
+    const T& v = w.y();
+    const T s = w.squaredNorm();
     const Vector2 tangential(2.0 * p1 * u * v + p2 * (s + 2.0 * u * u),
                              2.0 * p2 * u * v + p1 * (s + 2.0 * v * v));
     return tangential + s * s1 + s * s * s2;

@@ -47,8 +47,9 @@ ModelPictures::ModelPictures(const SparseModel& model, const std::filesystem::pa
     const Camera& to = *posed->second;
     const Camera& from = found_in == cameras.end() ? to : found_in->second;
     if (!AreScaledSizes(from.width, from.height, to.width, to.height)) continue;
-    in_database_[image.name] = {image.image_id, static_cast<float>(to.width) / from.width,
-                                static_cast<float>(to.height) / from.height};
+    in_database_[image.name] = {image.image_id,
+                                static_cast<float>(to.width) / static_cast<float>(from.width),
+                                static_cast<float>(to.height) / static_cast<float>(from.height)};
   }
 }
 

@@ -233,7 +233,9 @@ int SeaPointIndex::ScoreVotes(const Features& features, const Vote* begin, const
   std::vector<const Vote*> agreeing;
   int sum = 0;
   for (const Vote* vote = begin; vote != end; ++vote) {
-    const int off = static_cast<int8_t>(vote->angle_step - middle);  // around the turn
+    // The difference, modulo a turn.
+    const int off =
+        ((vote->angle_step - middle + kAngleSteps / 2) & (kAngleSteps - 1)) - kAngleSteps / 2;
     if (std::abs(off) > kAngleWindow) continue;
     sum += off;
     agreeing.push_back(vote);

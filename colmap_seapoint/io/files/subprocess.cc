@@ -14,8 +14,6 @@
 
 #include "colmap_seapoint/base/error.h"
 
-extern char** environ;
-
 namespace colmap_seapoint {
 namespace {
 
