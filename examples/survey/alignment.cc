@@ -114,7 +114,7 @@ Similarity3d RefineOnSurface(const HeightField& surface, const std::vector<Eigen
     const Eigen::Vector3d pivot = similarity * points.front().cast<double>();
     for (size_t i = 0; i < points.size(); i += stride) {
       const Eigen::Vector3d p = similarity * points[i].cast<double>();
-      if (!surface.Contains(p.x(), p.y())) continue;
+      if (!surface.Grid().Contains(p.x(), p.y())) continue;
       const Eigen::Vector3d n = surface.Normal(p.x(), p.y());
       const double error = n.z() * (p.z() - surface.Height(p.x(), p.y()));
       if (std::abs(error) > reach) continue;

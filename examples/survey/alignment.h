@@ -6,7 +6,7 @@
 
 #include "colmap_seapoint/base/similarity3.h"
 #include "colmap_seapoint/base/sparse_model.h"
-#include "examples/survey/height_field.h"
+#include "examples/survey/scene/height_field.h"
 
 namespace colmap_seapoint {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "colmap_seapoint/base/error.h"
-#include "examples/survey/noise.h"
+#include "examples/survey/scene/noise.h"
 #include "examples/survey/visibility.h"
 
 namespace colmap_seapoint {

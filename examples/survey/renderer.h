@@ -5,10 +5,10 @@
 
 #include "colmap_seapoint/base/image.h"
 #include "colmap_seapoint/base/sparse_model.h"
-#include "examples/survey/height_field.h"
-#include "examples/survey/seabed.h"
+#include "examples/survey/scene/height_field.h"
+#include "examples/survey/scene/seabed.h"
+#include "examples/survey/scene/water.h"
 #include "examples/survey/survey_path.h"
-#include "examples/survey/water.h"
 
 namespace colmap_seapoint {
 

@@ -51,9 +51,12 @@ void SummariseDistances(std::vector<float> distances, double gsd, SurveyScore* s
 class PointBins {
  public:
   PointBins(const HeightField& surface, const std::vector<Eigen::Vector3f>& points, double cell)
-      : points_(points), cell_(cell), min_x_(surface.MinX() - cell), min_y_(surface.MinY() - cell) {
-    nx_ = static_cast<int>((surface.MaxX() - min_x_) / cell) + 2;
-    ny_ = static_cast<int>((surface.MaxY() - min_y_) / cell) + 2;
+      : points_(points),
+        cell_(cell),
+        min_x_(surface.Grid().MinX() - cell),
+        min_y_(surface.Grid().MinY() - cell) {
+    nx_ = static_cast<int>((surface.Grid().MaxX() - min_x_) / cell) + 2;
+    ny_ = static_cast<int>((surface.Grid().MaxY() - min_y_) / cell) + 2;
     begin_.assign(static_cast<size_t>(nx_) * static_cast<size_t>(ny_) + 1, 0);
     for (const Eigen::Vector3f& p : points) {
       const int64_t bin = Bin(p.x(), p.y());
@@ -121,14 +124,14 @@ SurfaceSamples SampleSurface(const SurveyTruth& truth, const PointBins& bins, in
   samples.ny = (surface.Grid().ny - 1) / kSampleStep;
   samples.state.assign(static_cast<size_t>(samples.nx) * static_cast<size_t>(samples.ny),
                        kNotTwiceSeen);
-  const double side = kSampleStep * surface.CellSize();
+  const double side = kSampleStep * surface.Grid().step;
   std::vector<std::array<double, 4>> row_areas(static_cast<size_t>(samples.ny));
   ParallelFor(num_threads, samples.ny, [&](int64_t j) {
     std::array<double, 4>& areas = row_areas[static_cast<size_t>(j)];
     areas.fill(0);
     for (int i = 0; i < samples.nx; ++i) {
-      const double x = surface.MinX() + (i + 0.5) * side;
-      const double y = surface.MinY() + (static_cast<double>(j) + 0.5) * side;
+      const double x = surface.Grid().MinX() + (i + 0.5) * side;
+      const double y = surface.Grid().MinY() + (static_cast<double>(j) + 0.5) * side;
       const Eigen::Vector3d place(x, y, surface.Height(x, y));
       const Eigen::Vector3d normal = surface.Normal(x, y);
       if (visibility.CountViews(place, normal, 2) < 2) continue;
@@ -157,13 +160,16 @@ void SummariseCoverage(const SurveyTruth& truth, const std::vector<Eigen::Vector
     score->coverage_2gsd = samples.area[kCovered2] / score->twice_seen_m2;
     score->coverage_4gsd = covered / score->twice_seen_m2;
   }
-  const double side = kSampleStep * surface.CellSize();
-  const size_t cells_x = static_cast<size_t>((surface.MaxX() - surface.MinX()) / truth.gsd) + 1;
-  const size_t cells_y = static_cast<size_t>((surface.MaxY() - surface.MinY()) / truth.gsd) + 1;
+  const double side = kSampleStep * surface.Grid().step;
+  const size_t cells_x =
+      static_cast<size_t>((surface.Grid().MaxX() - surface.Grid().MinX()) / truth.gsd) + 1;
+  const size_t cells_y =
+      static_cast<size_t>((surface.Grid().MaxY() - surface.Grid().MinY()) / truth.gsd) + 1;
   std::vector<bool> occupied(cells_x * cells_y, false);
   size_t num_near = 0, num_cells = 0, num_on_covered = 0;
   for (size_t k = 0; k < points.size(); ++k) {
-    const double x = points[k].x() - surface.MinX(), y = points[k].y() - surface.MinY();
+    const double x = points[k].x() - surface.Grid().MinX(),
+                 y = points[k].y() - surface.Grid().MinY();
     if (distances[k] > 4 * truth.gsd || x < 0 || y < 0) continue;
     const size_t cx = static_cast<size_t>(x / truth.gsd), cy = static_cast<size_t>(y / truth.gsd);
     if (cx >= cells_x || cy >= cells_y) continue;

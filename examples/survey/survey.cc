@@ -6,7 +6,7 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/parallel.h"
 #include "examples/survey/renderer.h"
-#include "examples/survey/seabed.h"
+#include "examples/survey/scene/seabed.h"
 #include "examples/survey/visibility.h"
 
 namespace colmap_seapoint {
@@ -106,8 +106,8 @@ void RenderSurvey(const SurveyOptions& options, const SurveyTruth& truth,
                   const std::function<void(const PosedImage&, ColorImage&&)>& take) {
   const Seabed seabed = MakeSeabed(options);
   const HeightField& surface = truth.surface;
-  AlbedoMap albedo(seabed, surface.MinX(), surface.MinY(), surface.MaxX(), surface.MaxY(),
-                   kMaxAlbedoBytes);
+  AlbedoMap albedo(seabed, surface.Grid().MinX(), surface.Grid().MinY(), surface.Grid().MaxX(),
+                   surface.Grid().MaxY(), kMaxAlbedoBytes);
   Renderer renderer(options, truth.model.cameras.at(1), surface, &albedo);
   for (const PosedImage& image : truth.model.images) {
     take(image, renderer.Render(image, options.num_threads));

@@ -6,7 +6,7 @@
 
 #include "colmap_seapoint/base/image.h"
 #include "colmap_seapoint/base/sparse_model.h"
-#include "examples/survey/height_field.h"
+#include "examples/survey/scene/height_field.h"
 #include "examples/survey/survey_path.h"
 
 namespace colmap_seapoint {

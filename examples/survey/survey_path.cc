@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "colmap_seapoint/base/error.h"
-#include "examples/survey/noise.h"
+#include "examples/survey/scene/noise.h"
 
 namespace colmap_seapoint {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "colmap_seapoint/base/sparse_model.h"
-#include "examples/survey/height_field.h"
+#include "examples/survey/scene/height_field.h"
 
 namespace colmap_seapoint {
 

@@ -27,8 +27,8 @@ SurveyTruth MakeTruth(double relief, int num_strips = 2) {
 std::vector<Eigen::Vector3f> ExactCloud(const SurveyTruth& truth) {
   const HeightField& surface = truth.surface;
   std::vector<Eigen::Vector3f> cloud;
-  for (double y = surface.MinY(); y < surface.MaxY(); y += surface.CellSize()) {
-    for (double x = surface.MinX(); x < surface.MaxX(); x += surface.CellSize()) {
+  for (double y = surface.Grid().MinY(); y < surface.Grid().MaxY(); y += surface.Grid().step) {
+    for (double x = surface.Grid().MinX(); x < surface.Grid().MaxX(); x += surface.Grid().step) {
       cloud.push_back(Eigen::Vector3d(x, y, surface.Height(x, y)).cast<float>());
     }
   }
@@ -52,9 +52,9 @@ TEST(ScoreTest, PlaneIsCoveredWholly) {
   const SurveyScore score = ScoreSurvey(truth, truth.model, ExactCloud(truth), {});
   EXPECT_EQ(score.coverage_4gsd, 1);
   EXPECT_EQ(score.coverage_2gsd, 1);
-  const double cell = truth.surface.CellSize() / truth.gsd;
+  const double cell = truth.surface.Grid().step / truth.gsd;
   EXPECT_NEAR(score.points_per_gsd2, 1 / (cell * cell), 0.02);
-  EXPECT_NEAR(score.points_per_cm2, 1e-4 / std::pow(truth.surface.CellSize(), 2), 0.02);
+  EXPECT_NEAR(score.points_per_cm2, 1e-4 / std::pow(truth.surface.Grid().step, 2), 0.02);
 }
 
 TEST(ScoreTest, ShiftedCloudIsOffByTheShift) {

@@ -217,7 +217,7 @@ TEST(SurveyTest, TruthComesBackFromDisk) {
   const SurveyTruth back = ReadSurveyTruth(dir);
   EXPECT_EQ(back.gsd, truth.gsd);
   EXPECT_EQ(back.surface.Heights(), truth.surface.Heights());
-  EXPECT_EQ(back.surface.MinX(), truth.surface.MinX());
+  EXPECT_EQ(back.surface.Grid().MinX(), truth.surface.Grid().MinX());
   EXPECT_EQ(back.model.points3D.size(), truth.model.points3D.size());
   EXPECT_LT((back.model.images[4].cam_from_world.OriginInSource() -
              truth.model.images[4].cam_from_world.OriginInSource())

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "examples/survey/noise.h"
+#include "examples/survey/scene/noise.h"
 
 namespace colmap_seapoint {
 
@@ -19,16 +19,8 @@ class HeightField {
 
   const GridSpec& Grid() const { return grid_; }
   const Field& Heights() const { return heights_; }
-  double CellSize() const { return grid_.step; }
-  double MinX() const { return grid_.X(0); }
-  double MinY() const { return grid_.Y(0); }
-  double MaxX() const { return grid_.X(grid_.nx - 1); }
-  double MaxY() const { return grid_.Y(grid_.ny - 1); }
   float MinHeight() const { return min_height_; }
   float MaxHeight() const { return max_height_; }
-  bool Contains(double x, double y) const {
-    return x >= MinX() && y >= MinY() && x <= MaxX() && y <= MaxY();
-  }
 
   // Outside the field: the height of the nearest place on its edge.
   double Height(double x, double y) const;
@@ -50,10 +42,6 @@ class HeightField {
     int nx;
     std::vector<float> max;
   };
-  float Node(int i, int j) const {
-    return heights_[static_cast<size_t>(j) * static_cast<size_t>(grid_.nx) +
-                    static_cast<size_t>(i)];
-  }
   void BuildLevels();
   double DistanceToCell(const Eigen::Vector3d& local, int i, int j, double best) const;
 

@@ -1,4 +1,4 @@
-#include "examples/survey/water.h"
+#include "examples/survey/scene/water.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "colmap_seapoint/base/parallel.h"
-#include "examples/survey/noise.h"
+#include "examples/survey/scene/noise.h"
 
 namespace colmap_seapoint {
 namespace {

@@ -1,4 +1,4 @@
-#include "examples/survey/height_field.h"
+#include "examples/survey/scene/height_field.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -72,7 +72,7 @@ void HeightField::BuildLevels() {
         for (int by = std::max(0, (j - 1) / size); by <= std::min(ny - 1, j / size); ++by) {
           for (int bx = std::max(0, (i - 1) / size); bx <= std::min(level.nx - 1, i / size); ++bx) {
             float& max = level.max[static_cast<size_t>(by * level.nx + bx)];
-            max = std::max(max, Node(i, j));
+            max = std::max(max, heights_[grid_.Index(i, j)]);
           }
         }
       }
@@ -89,8 +89,10 @@ double HeightField::Height(double x, double y) const {
   const int i = std::min(static_cast<int>(gx), grid_.nx - 2);
   const int j = std::min(static_cast<int>(gy), grid_.ny - 2);
   const double u = gx - i, v = gy - j;
-  const double top = Node(i, j) + u * (Node(i + 1, j) - Node(i, j));
-  const double bottom = Node(i, j + 1) + u * (Node(i + 1, j + 1) - Node(i, j + 1));
+  const double top = heights_[grid_.Index(i, j)] +
+                     u * (heights_[grid_.Index(i + 1, j)] - heights_[grid_.Index(i, j)]);
+  const double bottom = heights_[grid_.Index(i, j + 1)] +
+                        u * (heights_[grid_.Index(i + 1, j + 1)] - heights_[grid_.Index(i, j + 1)]);
   return top + v * (bottom - top);
 }
 
@@ -138,8 +140,9 @@ std::optional<double> HeightField::IntersectRay(const Eigen::Vector3d& origin,
         continue;
       }
     } else {
-      const double z00 = Node(bx, by), z10 = Node(bx + 1, by), z01 = Node(bx, by + 1);
-      const double z11 = Node(bx + 1, by + 1);
+      const double z00 = heights_[grid_.Index(bx, by)], z10 = heights_[grid_.Index(bx + 1, by)],
+                   z01 = heights_[grid_.Index(bx, by + 1)];
+      const double z11 = heights_[grid_.Index(bx + 1, by + 1)];
       const auto clearance = [&](double s) {
         const double u = ray.x + s * ray.dx - bx, v = ray.y + s * ray.dy - by;
         return ray.z + s * ray.dz -
@@ -160,8 +163,9 @@ std::optional<double> HeightField::IntersectRay(const Eigen::Vector3d& origin,
 // lies on an edge (a straight line: closed form) or where the gradient vanishes (Newton).
 double HeightField::DistanceToCell(const Eigen::Vector3d& local, int i, int j, double best) const {
   const double s = 1 / grid_.step;
-  const double z00 = Node(i, j) * s, z10 = Node(i + 1, j) * s, z01 = Node(i, j + 1) * s;
-  const double z11 = Node(i + 1, j + 1) * s;
+  const double z00 = heights_[grid_.Index(i, j)] * s, z10 = heights_[grid_.Index(i + 1, j)] * s,
+               z01 = heights_[grid_.Index(i, j + 1)] * s;
+  const double z11 = heights_[grid_.Index(i + 1, j + 1)] * s;
   const Eigen::Vector3d p = local - Eigen::Vector3d(i, j, 0);
   const auto outside = [](double x, double low, double high) {
     return std::max({low - x, 0.0, x - high});
@@ -203,7 +207,7 @@ double HeightField::Distance(const Eigen::Vector3d& point, double limit) const {
                               point.y() / grid_.step - static_cast<double>(grid_.iy0),
                               point.z() / grid_.step);
   double best = limit / grid_.step;
-  if (Contains(point.x(), point.y())) {
+  if (grid_.Contains(point.x(), point.y())) {
     best = std::min(best, std::abs(point.z() - Height(point.x(), point.y())) / grid_.step);
   }
   const double far = best + 1;
