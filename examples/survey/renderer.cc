@@ -103,7 +103,7 @@ Eigen::Array3f Renderer::MeanAlbedo(const Rigid3d& world_from_cam, int x, int y,
                                     const Eigen::Vector3d& normal) const {
   const Eigen::Vector3d& origin = world_from_cam.translation;
   const double plane = normal.dot(point - origin);
-  const double tolerance = 0.02 * field_->CellSize();
+  const double tolerance = 0.02 * field_->Grid().step;
   Eigen::Array3f sum = Eigen::Array3f::Zero();
   for (int k = 0; k < 4; ++k) {
     const Eigen::Vector3d ray = world_from_cam.rotation * lens_.Ray(x + (k % 2 == 0 ? 0.25 : 0.75),
