@@ -27,11 +27,7 @@ class SecondChanceTest : public testing::Test {
     WriteMatches(&database_, ids_[i], ids_[j], matches, MakeGeometry(matches));
   }
 
-#if __has_include("colmap_seapoint/io/colmap/database_images.h")
   Names Find() { return FindSecondChancePictures(database_); }
-#else
-  Names Find() { return FindSecondChancePictures(path_); }
-#endif
 
   TempDir dir_;
   const std::filesystem::path path_ = dir_ / "database.db";
