@@ -18,7 +18,8 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr char kCommand[] = "feature_extractor";
-// Before the fingerprint of a picture that could not be read: it is tried again by the next run.
+// Prefix of the fingerprint of a picture that could not be read, so that the next run tries it
+// again.
 constexpr char kUnreadable[] = "unreadable:";
 constexpr char kNoSeaPoint[] = "has no SeaPoint: it shows no texture, or its mask covers it";
 
@@ -30,7 +31,8 @@ struct Extracted {
   Features features;
 };
 
-// What a picture's SeaPoints depend on is fixed for the whole run, but for the picture itself.
+// Finds the SeaPoints of one picture. All that they depend on is fixed for the run, except the
+// picture itself.
 class Extractor {
  public:
   Extractor(const FeatureExtractorOptions& options, std::set<std::string> second_chance_names)

@@ -38,8 +38,8 @@ struct AutomaticReconstructorOptions {
   void Bind(OptionTable* table);
   // The SeaPoints' defaults of the quality.
   void Preset();
-  // Before any work. Throws UsageError for values that contradict each other, Error for paths that
-  // are not there.
+  // To be called before any work. Throws UsageError for values that contradict each other, Error
+  // for paths that are not there.
   void Check() const;
   ForeignOptions Foreign();
 };

@@ -43,7 +43,7 @@ Eigen::Quaterniond WorldFromLevelCam(double heading_rad) {
   return Eigen::Quaterniond(axes);
 }
 
-// Where a picture is planned to be taken.
+// The place and heading at which a picture is planned to be taken.
 struct Station {
   double x = 0, y = 0;         // metres
   double altitude_factor = 1;  // of options.altitude

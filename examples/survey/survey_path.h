@@ -45,7 +45,7 @@ struct Rectangle {
   double min_x, min_y, max_x, max_y;  // metres
 };
 
-// What a picture can see of a seabed no lower than `lowest`.
+// The part of the ground that a picture can see when no seabed lies below `lowest`.
 Rectangle Footprint(const Camera& camera, const Rigid3d& cam_from_world, double lowest);
 
 Rectangle Union(const Rectangle& a, const Rectangle& b);

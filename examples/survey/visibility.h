@@ -19,7 +19,7 @@ class SurfaceVisibility {
   std::optional<Eigen::Vector2d> Project(size_t image_idx, const Eigen::Vector3d& point,
                                          const Eigen::Vector3d& normal) const;
 
-  // In how many pictures it is seen, at most `limit`.
+  // The number of pictures in which the place is seen, counted up to `limit`.
   int CountViews(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, int limit) const;
 
  private:

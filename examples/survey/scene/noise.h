@@ -20,7 +20,7 @@ inline uint64_t Hash(uint64_t seed, int64_t a, int64_t b = 0) {
               static_cast<uint64_t>(b) * 0xa0761d6478bd642fULL);
 }
 
-// In [0, 1).
+// A number in [0, 1) from a hash.
 inline double Uniform(uint64_t hash) { return static_cast<double>(hash >> 11) * 0x1p-53; }
 
 // Mean 0, standard deviation 1, never beyond 3: the sum of three uniform numbers.
