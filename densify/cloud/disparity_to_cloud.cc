@@ -21,78 +21,86 @@ std::array<uint8_t, 3> ColorNear(const Picture& picture, float x, float y) {
                  std::clamp(static_cast<int>(y), 0, picture.luma.height - 1));
 }
 
+// Whether a sample of the surface becomes a point: where the frame magnifies, not every one does.
+class PointChoice {
+ public:
+  PointChoice(const PartialSurface& surface, const PairGeometry& geometry) : surface_(surface) {
+    for (int a = 0; a < surface.grid.width; ++a) {
+      stride_.push_back(geometry.SampleStride(surface.grid.RectX(a)));
+    }
+  }
+
+  bool Holds(int a, int b) const {
+    const int stride = stride_[static_cast<size_t>(a)];
+    return a % stride == 0 && b % stride == 0 && RowOf(surface_.disparity, surface_.grid, b)[a] > 0;
+  }
+
+ private:
+  const PartialSurface& surface_;
+  std::vector<int> stride_;
+};
+
 // The points of one row of samples.
 class RowToPoints {
  public:
-  RowToPoints(const PartialSurface& surface, const PairGeometry& geometry, const RectMap& map1,
-              const Picture& picture1)
+  RowToPoints(const PartialSurface& surface, const PointChoice& choice,
+              const PairGeometry& geometry, const RectMap& map1, const Picture& picture1)
       : surface_(surface),
+        choice_(choice),
+        geometry_(geometry),
         map1_(map1),
         picture1_(picture1),
-        focal_(static_cast<float>(geometry.focal)),
-        focal_baseline_(static_cast<float>(geometry.focal * geometry.baseline)),
-        world_from_rect_(geometry.world_from_rect.cast<float>()),
-        center1_(geometry.center1),
         x_(static_cast<size_t>(surface.grid.window.width) + RectMap::kRowSlack),
         y_(x_.size()) {}
 
   void Run(int b, DensePoint* next) {
     const SampleGrid& grid = surface_.grid;
-    const float* disparity = RowOf(surface_.disparity, grid, b);
-    const float* slope_x = RowOf(surface_.slope_x, grid, b);
-    const float* slope_y = RowOf(surface_.slope_y, grid, b);
     int first = 0;
-    while (first < grid.width && disparity[first] <= 0) ++first;
+    while (first < grid.width && !choice_.Holds(first, b)) ++first;
     if (first == grid.width) return;
     map1_.SourceRow(grid.PixelY(b), 0, grid.window.width, x_.data(), y_.data());
-    const float rect_y = static_cast<float>(grid.RectY(b));
     for (int a = first; a < grid.width; ++a) {
-      const float d = disparity[a];
-      if (d <= 0) continue;
-      const float rect_x = static_cast<float>(grid.RectX(a));
-      const Eigen::Vector3f ray =
-          world_from_rect_ * Eigen::Vector3f(rect_x / focal_, rect_y / focal_, 1);
-      DensePoint& point = *next++;
-      point.xyz = (center1_ + (focal_baseline_ / d * ray).cast<double>()).cast<float>();
-      point.normal = Normal(rect_x, rect_y, d, slope_x[a], slope_y[a], ray);
-      const size_t pixel = static_cast<size_t>(grid.PixelX(a));
-      point.rgb = ColorNear(picture1_, x_[pixel], y_[pixel]);
+      if (choice_.Holds(a, b)) *next++ = PointOf(a, b);
     }
   }
 
  private:
-  // Rect points lie at (x, y, f) B / d. Where d = c + p x + q y (x, y in rect pixels), d X = B x
-  // etc. give the plane n . X = const with n ~ (p, q, (d - p x - q y) / f): the surface's normal.
-  Eigen::Vector3f Normal(float x, float y, float d, float p, float q,
-                         const Eigen::Vector3f& ray) const {
-    if (p == 0 && q == 0) return -ray.normalized();
-    const Eigen::Vector3f normal =
-        world_from_rect_ * Eigen::Vector3f(p, q, (d - p * x - q * y) / focal_).normalized();
-    return normal.dot(ray) > 0 ? Eigen::Vector3f(-normal) : normal;
+  DensePoint PointOf(int a, int b) const {
+    const SampleGrid& grid = surface_.grid;
+    const double x = grid.RectX(a), y = grid.RectY(b), d = RowOf(surface_.disparity, grid, b)[a];
+    const double slope_x = RowOf(surface_.slope_x, grid, b)[a];
+    const double slope_y = RowOf(surface_.slope_y, grid, b)[a];
+    const Eigen::Vector3d in_rect = geometry_.PointInRect(x, y, d);
+    const bool has_normal = slope_x != 0 || slope_y != 0;
+    const Eigen::Vector3d normal = has_normal ? geometry_.NormalInRect(x, y, d, slope_x, slope_y)
+                                              : Eigen::Vector3d(-in_rect.normalized());
+    const size_t pixel = static_cast<size_t>(grid.PixelX(a));
+    return {(geometry_.world_from_rect * in_rect + geometry_.center1).cast<float>(),
+            (geometry_.world_from_rect * normal).cast<float>(),
+            ColorNear(picture1_, x_[pixel], y_[pixel])};
   }
 
   const PartialSurface& surface_;
+  const PointChoice& choice_;
+  const PairGeometry& geometry_;
   const RectMap& map1_;
   const Picture& picture1_;
-  const float focal_, focal_baseline_;
-  const Eigen::Matrix3f world_from_rect_;
-  const Eigen::Vector3d center1_;
   std::vector<float> x_, y_;
 };
 
 // The samples of a picture's cell.
 struct CellSum {
-  Eigen::Vector3f point = Eigen::Vector3f::Zero();  // (x, y, 1) / disparity: linear in the place
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  // of the matched ones, rect frame
   int matched = 0, all = 0;
 };
 
-std::vector<CellSum> SumCells(const PartialSurface& surface, const SampleGrid& nodes,
-                              const std::vector<int>& cell_of_node, size_t num_cells) {
+std::vector<CellSum> SumCells(const PartialSurface& surface, const PairGeometry& geometry,
+                              const SampleGrid& nodes, const std::vector<int>& cell_of_node,
+                              size_t num_cells) {
   const SampleGrid& grid = surface.grid;
   std::vector<CellSum> sums(num_cells);
   for (int b = 0; b < grid.height; ++b) {
     const float* row = RowOf(surface.disparity, grid, b);
-    const float y = static_cast<float>(grid.RectY(b));
     for (int a = 0; a < grid.width; ++a) {
       const int cell = cell_of_node[nodes.IndexAt(grid.PixelX(a), grid.PixelY(b))];
       if (cell < 0) continue;
@@ -100,7 +108,7 @@ std::vector<CellSum> SumCells(const PartialSurface& surface, const SampleGrid& n
       ++sum.all;
       if (row[a] <= 0) continue;
       ++sum.matched;
-      sum.point += Eigen::Vector3f(static_cast<float>(grid.RectX(a)), y, 1) / row[a];
+      sum.point += geometry.PointInRect(grid.RectX(a), grid.RectY(b), row[a]);
     }
   }
   return sums;
@@ -111,18 +119,18 @@ std::vector<CellSum> SumCells(const PartialSurface& surface, const SampleGrid& n
 PartialCloud MakePartialCloud(const PartialSurface& surface, const PairGeometry& geometry,
                               const RectMap& map1, const Picture& picture1, int num_threads) {
   const SampleGrid& grid = surface.grid;
-  std::vector<size_t> first_of_row(static_cast<size_t>(grid.height) + 1, 0);
+  const PointChoice choice(surface, geometry);
+  std::vector<size_t> first_of_row(1, 0);
   for (int b = 0; b < grid.height; ++b) {
-    const float* row = RowOf(surface.disparity, grid, b);
-    first_of_row[static_cast<size_t>(b) + 1] =
-        first_of_row[static_cast<size_t>(b)] +
-        static_cast<size_t>(std::count_if(row, row + grid.width, [](float d) { return d > 0; }));
+    size_t count = 0;
+    for (int a = 0; a < grid.width; ++a) count += choice.Holds(a, b);
+    first_of_row.push_back(first_of_row.back() + count);
   }
   PartialCloud cloud;
   cloud.points.resize(first_of_row.back());
   constexpr int kBand = 16;  // rows a task
   ParallelFor(num_threads, (grid.height + kBand - 1) / kBand, [&](int64_t band) {
-    RowToPoints row_to_points(surface, geometry, map1, picture1);
+    RowToPoints row_to_points(surface, choice, geometry, map1, picture1);
     const int begin = static_cast<int>(band) * kBand, end = std::min(grid.height, begin + kBand);
     for (int b = begin; b < end; ++b) {
       row_to_points.Run(b, cloud.points.data() + first_of_row[static_cast<size_t>(b)]);
@@ -134,7 +142,8 @@ PartialCloud MakePartialCloud(const PartialSurface& surface, const PairGeometry&
 CellTally TallyCells(const PartialSurface& surface, const PairGeometry& geometry,
                      const SampleGrid& nodes, const std::vector<int>& cell_of_node,
                      const KnownCells& known) {
-  const std::vector<CellSum> sums = SumCells(surface, nodes, cell_of_node, known.grid.Size());
+  const std::vector<CellSum> sums =
+      SumCells(surface, geometry, nodes, cell_of_node, known.grid.Size());
   CellTally tally;
   tally.filled.assign(sums.size(), 0);
   for (size_t cell = 0; cell < sums.size(); ++cell) {
@@ -142,12 +151,10 @@ CellTally TallyCells(const PartialSurface& surface, const PairGeometry& geometry
     if (sum.matched == 0) continue;
     tally.filled[cell] = static_cast<float>(sum.matched) / static_cast<float>(sum.all);
     if (tally.filled[cell] < kMinCoveredCell || !known.IsNew(cell)) continue;
-    const Eigen::Vector3d mean = sum.point.cast<double>() / sum.matched;
-    const Eigen::Vector3d center =
-        geometry.PointInWorld(mean.x() / mean.z(), mean.y() / mean.z(), 1 / mean.z());
-    const double range = (center - geometry.center1).norm();
+    const Eigen::Vector3d mean = sum.point / sum.matched;
     tally.footprint.patches.push_back(
-        {center.cast<float>(), static_cast<float>(known.grid.cell * range / geometry.focal)});
+        {(geometry.world_from_rect * mean + geometry.center1).cast<float>(),
+         static_cast<float>(known.grid.cell * mean.norm() / geometry.camera1.MeanFocal())});
   }
   tally.footprint.UpdateSphere();
   return tally;

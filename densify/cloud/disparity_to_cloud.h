@@ -12,8 +12,8 @@
 
 namespace colmap_seapoint {
 
-// One point a sample of the surface, in raster order of the samples; normals from its slopes
-// (towards the camera where it has none), colours of picture 1.
+// One point a sample of the surface (fewer where the frame magnifies), in their raster order;
+// normals from its slopes (towards the camera where it has none), colours of picture 1.
 PartialCloud MakePartialCloud(const PartialSurface& surface, const PairGeometry& geometry,
                               const RectMap& map1, const Picture& picture1, int num_threads);
 

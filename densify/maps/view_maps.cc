@@ -40,12 +40,31 @@ PatchCorners CornersOn(const Eigen::Vector3d& rect_normal, const Eigen::Vector3d
   return corners;
 }
 
-}  // namespace
+// A plane on which the samples around one lie on a lattice.
+struct PatchFrame {
+  Eigen::Matrix3d rect_from_world;
+  double focal, step;  // pixels
+};
 
-SampleFrame SampleFrameOf(const PairGeometry& geometry, int step) {
-  return {geometry.world_from_rect.transpose(), geometry.center1, geometry.focal,
-          static_cast<double>(step)};
+// The pair's own plane; on Mercator's map the plane that touches it at a point (from the pair's
+// first centre, rect frame), where one radian is as many pixels as the map is drawn with there.
+PatchFrame FrameOf(const SampleFrame& frame, const Eigen::Vector3d& in_rect) {
+  const PairGeometry& geometry = frame.geometry;
+  const Eigen::Matrix3d rect_from_world = geometry.world_from_rect.transpose();
+  if (geometry.surface == RectSurface::kPlane) {
+    return {rect_from_world, geometry.focal, frame.step};
+  }
+  const double across = std::hypot(in_rect.y(), in_rect.z());
+  const double x = geometry.focal * std::asinh(in_rect.x() / across);
+  const Eigen::Vector3d z_axis = in_rect.normalized();
+  const Eigen::Vector3d y_axis = z_axis.cross(Eigen::Vector3d::UnitX()).normalized();
+  Eigen::Matrix3d touching_from_rect;
+  touching_from_rect << y_axis.cross(z_axis).transpose(), y_axis.transpose(), z_axis.transpose();
+  return {touching_from_rect * rect_from_world, geometry.focal * in_rect.norm() / across,
+          frame.step * geometry.SampleStride(x)};
 }
+
+}  // namespace
 
 // What all samples of a pair share in this view.
 struct ViewMapRenderer::PairTerms {
@@ -91,16 +110,29 @@ bool ViewMapRenderer::MayShow(const Eigen::Vector3d& center, double radius) cons
   return in_cam.z() > -radius && (sides_ * in_cam).minCoeff() > -radius;
 }
 
-void ViewMapRenderer::Add(const SampleFrame& frame, const DensePoint* points, size_t count) {
+ViewMapRenderer::PairTerms ViewMapRenderer::TermsOf(const SampleFrame& frame,
+                                                    const Eigen::Vector3d& in_rect) const {
+  const PatchFrame patch_frame = FrameOf(frame, in_rect);
   PairTerms pair;
-  pair.rect_from_world = frame.rect_from_world;
-  pair.rect_from_cam = frame.rect_from_world * rotation_.transpose();
-  pair.rect_center = frame.rect_from_world * (center_ - frame.center);
-  pair.pair_center = frame.center;
-  pair.focal = frame.focal;
-  pair.step = frame.step;
-  pair.half = (0.5 + kOverlap) * frame.step;
+  pair.rect_from_world = patch_frame.rect_from_world;
+  pair.rect_from_cam = patch_frame.rect_from_world * rotation_.transpose();
+  pair.rect_center = patch_frame.rect_from_world * (center_ - frame.geometry.center1);
+  pair.pair_center = frame.geometry.center1;
+  pair.focal = patch_frame.focal;
+  pair.step = patch_frame.step;
+  pair.half = (0.5 + kOverlap) * patch_frame.step;
+  return pair;
+}
+
+void ViewMapRenderer::Add(const SampleFrame& frame, const DensePoint* points, size_t count) {
+  const PairGeometry& geometry = frame.geometry;
+  const bool is_same_for_all = geometry.surface == RectSurface::kPlane;
+  PairTerms pair = TermsOf(frame, Eigen::Vector3d::UnitZ());
   for (size_t i = 0; i < count; ++i) {
+    if (!is_same_for_all) {
+      pair = TermsOf(frame, geometry.world_from_rect.transpose() *
+                                (points[i].xyz.cast<double>() - geometry.center1));
+    }
     const std::optional<Patch> patch = MakePatch(pair, points[i]);
     if (patch) Draw(pair, *patch);
   }

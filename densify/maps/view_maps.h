@@ -19,16 +19,11 @@
 
 namespace colmap_seapoint {
 
-// Where a pair's samples lie: on a lattice `step` apart of the plane z = focal before `center`.
+// Where a pair's samples lie, in its rectified frame.
 struct SampleFrame {
-  Eigen::Matrix3d rect_from_world;
-  Eigen::Vector3d center;  // world: camera centre of the pair's first picture
-  double focal = 0;        // pixels
-  double step = 1;         // pixels
+  PairGeometry geometry;
+  double step = 1;  // between samples: SampleStep() of the pair's first camera, pixels
 };
-
-// step: SampleStep() of the pair's first camera.
-SampleFrame SampleFrameOf(const PairGeometry& geometry, int step);
 
 // COLMAP's fusion takes the value at (column c, row r) for that of the ray through the place (c, r)
 // of the camera's plane, which is the corner of the pixel, not its centre. So do these maps:
@@ -61,6 +56,9 @@ class ViewMapRenderer {
     double fx, fy, cx, cy;  // pixels
   };
 
+  // in_rect: a point of the pair, from its first centre, rect frame; a plane has the same terms for
+  // all of them.
+  PairTerms TermsOf(const SampleFrame& frame, const Eigen::Vector3d& in_rect) const;
   // nullopt when nothing of it can be seen.
   std::optional<Patch> MakePatch(const PairTerms& pair, const DensePoint& point) const;
   std::optional<PixelBox> BoxOf(const std::array<Eigen::Vector3d, 4>& corners,

@@ -9,11 +9,10 @@ namespace colmap_seapoint {
 
 namespace {
 
-constexpr float kMaxStep = 1.0f;         // disparity between neighbouring samples of one surface
-constexpr int kMinAgreeing = 3;          // of a sample's 8 neighbours
-constexpr int kMinSpeckSize = 12;        // nodes
-constexpr double kMinParallax = 0.0175;  // a degree
-constexpr uint8_t kMinSupport = 6;       // samples of one surface, in a window of 25 or more
+constexpr float kMaxStep = 1.0f;    // disparity between neighbouring samples of one surface
+constexpr int kMinAgreeing = 3;     // of a sample's 8 neighbours
+constexpr int kMinSpeckSize = 12;   // nodes
+constexpr uint8_t kMinSupport = 6;  // samples of one surface, in a window of 25 or more
 
 float SurfaceTolerance(const PartialDisparity& partial) {
   return kMaxStep * std::max(1.0f, 0.5f * static_cast<float>(partial.grid.step));
@@ -165,15 +164,11 @@ void RemoveUnsupported(const PairGeometry& geometry, PartialSurface* surface) {
   const SampleGrid& grid = surface->grid;
   for (int b = 0; b < grid.height; ++b) {
     const size_t row = static_cast<size_t>(b) * static_cast<size_t>(grid.width);
-    // The point (x, y, f) B / d lies |(x, y, f)| B / d away, and the baseline B along x looks
-    // sqrt(y^2 + f^2) / |(x, y, f)| as long from there: their ratio is the angle.
-    const double across2 = grid.RectY(b) * grid.RectY(b) + geometry.focal * geometry.focal;
-    const double across = std::sqrt(across2);
     for (int a = 0; a < grid.width; ++a) {
       float& disparity = surface->disparity[row + static_cast<size_t>(a)];
-      const double range2 = grid.RectX(a) * grid.RectX(a) + across2;
-      const bool measurable = disparity * across >= kMinParallax * range2;
-      if (surface->support[row + static_cast<size_t>(a)] < kMinSupport || !measurable) {
+      if (disparity <= 0) continue;
+      if (surface->support[row + static_cast<size_t>(a)] < kMinSupport ||
+          geometry.SineOfParallax(grid.RectX(a), grid.RectY(b), disparity) < kMinSineOfParallax) {
         disparity = 0;
       }
     }

@@ -17,8 +17,8 @@ void RemoveInconsistent(const Gate& gate, PartialDisparity* nodes);
 void RemoveContradictions(const Gate& gate, int num_threads, PartialDisparity* samples);
 
 // Takes out samples of the fitted surface that hardly any other agrees with, and samples whose two
-// rays meet at less than a degree: near the epipole of a picture taken in the direction of motion,
-// depth is a guess.
+// rays meet at less than two degrees: near the epipole of a picture taken in the direction of
+// motion, and far away, depth is a guess.
 void RemoveUnsupported(const PairGeometry& geometry, PartialSurface* surface);
 
 }  // namespace colmap_seapoint

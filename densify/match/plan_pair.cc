@@ -9,7 +9,7 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr int kMaxFineStep = 2;          // samples farther apart: nodes are too
-constexpr double kMaxRowDifference = 2;  // between a seed's two rect rows, pixels
+constexpr double kMaxRowDifference = 2;  // between a seed's two rows, pixels of picture 1
 constexpr int kMinWindow = 8;            // pixels: a smaller window of a picture holds nothing
 constexpr size_t kMinSeeds = 5;          // in new areas: fewer are not worth rectifying for
 
@@ -43,9 +43,10 @@ void Cut(double low, double high, int* begin, int* size) {
 std::optional<Seed> SeedOf(const PairGeometry& geometry, const PixelPair& pair) {
   const auto rect1 = geometry.RectFromPixel1(pair.pixel1);
   const auto rect2 = geometry.RectFromPixel2(pair.pixel2);
-  if (!rect1 || !rect2 || std::abs(rect1->y() - rect2->y()) > kMaxRowDifference) {
-    return std::nullopt;
-  }
+  if (!rect1 || !rect2) return std::nullopt;
+  const double magnification =
+      std::max({1.0, geometry.Magnification(rect1->x()), geometry.Magnification(rect2->x())});
+  if (std::abs(rect1->y() - rect2->y()) > kMaxRowDifference * magnification) return std::nullopt;
   const Seed seed{rect1->x(), rect1->y(), rect1->x() - rect2->x()};
   if (seed.disparity < 1) return std::nullopt;
   return seed;
@@ -80,7 +81,8 @@ DisparityRange RangeAround(const std::vector<Seed>& seeds) {
   return {static_cast<int>(0.9 * smallest) - 16, static_cast<int>(1.1 * largest) + 16};
 }
 
-// Whether a cell and its four neighbours are new: such a cell lies inside the box of the others.
+// Whether a cell and its four neighbours are new: on the plane such a cell lies inside the box of
+// the others.
 bool IsInnerNewCell(const KnownCells& cells, size_t cell) {
   const size_t width = static_cast<size_t>(cells.grid.width);
   return cell >= width && cell + width < cells.grid.Size() && cell % width > 0 &&
@@ -92,11 +94,14 @@ bool IsInnerNewCell(const KnownCells& cells, size_t cell) {
 // ones can grow to, with the margin that correlation windows need.
 RectWindow Window1(const PairPlan& plan) {
   const CellGrid& grid = plan.avoided.grid;
+  const bool on_plane = plan.geometry.surface == RectSurface::kPlane;
   RectBox box;
   for (size_t cell = 0; cell < grid.Size(); ++cell) {
-    if (!plan.avoided.IsNew(cell) || IsInnerNewCell(plan.avoided, cell)) continue;
+    if (!plan.avoided.IsNew(cell) || (on_plane && IsInnerNewCell(plan.avoided, cell))) continue;
     const auto rect = plan.geometry.RectFromPixel1(grid.Center(cell));
-    if (rect) box.Add(rect->x(), rect->y(), plan.margin + 2 * grid.cell);
+    if (!rect) continue;
+    const double magnification = std::max(1.0, plan.geometry.Magnification(rect->x()));
+    box.Add(rect->x(), rect->y(), plan.margin + 2 * grid.cell * magnification);
   }
   for (const Seed& seed : plan.covered_seeds) box.Add(seed.x, seed.y, plan.growth + plan.margin);
   RectWindow window = WindowOfPicture(plan.geometry, false);
@@ -125,7 +130,7 @@ PairPlan PlanPair(const PairInput& input, const MatchOptions& options) {
   const Camera& camera1 = input.view1.camera;
   const auto geometry = MakePairGeometry(camera1, input.view1.cam_from_world, input.view2.camera,
                                          input.view2.cam_from_world);
-  if (!geometry) return Failed("the cameras look along their baseline or coincide");
+  if (!geometry) return Failed("the cameras coincide");
   PairPlan plan;
   plan.geometry = *geometry;
   plan.avoided.grid = input.known.grid;

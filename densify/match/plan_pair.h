@@ -50,7 +50,7 @@ struct PairPlan {
   RectWindow window1, window2;
 };
 
-// Ordinary failures: the cameras cannot be rectified, there are fewer than five usable seeds, or
+// Ordinary failures: the cameras coincide, there are fewer than five usable seeds, or
 // the pictures do not overlap. Cost: O(cells + seeds).
 PairPlan PlanPair(const PairInput& input, const MatchOptions& options);
 

@@ -15,96 +15,59 @@ namespace {
 
 using rectify::kCell;
 
-constexpr double kMinAngleToBaselineDeg = 40;  // between a viewing direction and the baseline
-constexpr double kMaxSlope = 3.0;              // |x / z| of a rect ray that is still used
+constexpr double kMaxAlong = 3;  // asinh(cot of the angle to the baseline), 5.7 degrees
 
-std::optional<Eigen::Vector2d> RectFromPixel(const Camera& camera,
-                                             const Eigen::Matrix3d& cam_from_rect, double focal,
-                                             const Eigen::Vector2d& pixel) {
-  const auto ray = camera.CamFromImg(pixel);
-  if (!ray) return std::nullopt;
-  const Eigen::Vector3d in_rect = cam_from_rect.transpose() * ray->homogeneous();
-  if (!(in_rect.z() > 1e-3 * in_rect.norm())) return std::nullopt;
-  return Eigen::Vector2d(focal * in_rect.hnormalized());
+// A box of the rect frame.
+struct RectBounds {
+  double x_min = 1e30, x_max = -1e30, y_min = 1e30, y_max = -1e30;
+
+  void Add(double x, double y) {
+    x_min = std::min(x_min, x);
+    x_max = std::max(x_max, x);
+    y_min = std::min(y_min, y);
+    y_max = std::max(y_max, y);
+  }
+};
+
+// Whether the picture shows something of the half plane at which Mercator's map is cut open: then
+// it reaches from one side of the map to the other.
+bool SeesTheCut(const Camera& camera, const Eigen::Matrix3d& cam_from_rect) {
+  constexpr int kSamples = 64;
+  for (int i = 0; i <= kSamples; ++i) {
+    const double u = kMaxAlong * (2.0 * i / kSamples - 1);
+    const auto pixel = camera.ImgFromCam(cam_from_rect * Eigen::Vector3d(std::sinh(u), 0, -1));
+    if (pixel && camera.InImage(*pixel)) return true;
+  }
+  return false;
 }
 
 }  // namespace
 
-std::optional<Eigen::Vector2d> PairGeometry::RectFromPixel1(const Eigen::Vector2d& pixel) const {
-  return RectFromPixel(camera1, cam1_from_rect, focal, pixel);
-}
-
-std::optional<Eigen::Vector2d> PairGeometry::RectFromPixel2(const Eigen::Vector2d& pixel) const {
-  return RectFromPixel(camera2, cam2_from_rect, focal, pixel);
-}
-
-Eigen::Vector3d PairGeometry::PointInWorld(double x, double y, double disparity) const {
-  const double depth = focal * baseline / disparity;
-  return world_from_rect * (depth * Eigen::Vector3d(x / focal, y / focal, 1)) + center1;
-}
-
-double PairGeometry::DisparityAtRange(double x, double y, double range) const {
-  // range = depth * |ray|
-  return focal * baseline * Eigen::Vector3d(x / focal, y / focal, 1).norm() / range;
-}
-
-std::optional<PairGeometry> MakePairGeometry(const Camera& camera1, const Rigid3d& cam1_from_world,
-                                             const Camera& camera2,
-                                             const Rigid3d& cam2_from_world) {
-  const Eigen::Vector3d center1 = cam1_from_world.OriginInSource();
-  const Eigen::Vector3d center2 = cam2_from_world.OriginInSource();
-  const Eigen::Vector3d view1 = cam1_from_world.rotation.conjugate() * Eigen::Vector3d::UnitZ();
-  const Eigen::Vector3d view2 = cam2_from_world.rotation.conjugate() * Eigen::Vector3d::UnitZ();
-
-  PairGeometry geometry;
-  geometry.baseline = (center2 - center1).norm();
-  if (!(geometry.baseline > 1e-9)) return std::nullopt;
-  const Eigen::Vector3d x_axis = (center2 - center1) / geometry.baseline;
-  const double max_cos = std::cos(kMinAngleToBaselineDeg * M_PI / 180);
-  if (std::abs(x_axis.dot(view1)) > max_cos || std::abs(x_axis.dot(view2)) > max_cos) {
-    return std::nullopt;
-  }
-  const Eigen::Vector3d view = view1 + view2;
-  const Eigen::Vector3d across = view - x_axis.dot(view) * x_axis;
-  if (!(across.norm() > 0.2)) return std::nullopt;
-  const Eigen::Vector3d z_axis = across.normalized();
-  geometry.world_from_rect.col(0) = x_axis;
-  geometry.world_from_rect.col(1) = z_axis.cross(x_axis);
-  geometry.world_from_rect.col(2) = z_axis;
-
-  geometry.camera1 = camera1;
-  geometry.camera2 = camera2;
-  geometry.center1 = center1;
-  geometry.focal = camera1.MeanFocal();
-  geometry.cam1_from_rect = cam1_from_world.rotation * geometry.world_from_rect;
-  geometry.cam2_from_rect = cam2_from_world.rotation * geometry.world_from_rect;
-  return geometry;
-}
-
 RectWindow WindowOfPicture(const PairGeometry& geometry, bool second) {
   const Camera& camera = second ? geometry.camera2 : geometry.camera1;
+  const bool is_mercator = geometry.surface == RectSurface::kMercator;
   constexpr int kSamples = 32;
-  const double limit = kMaxSlope * geometry.focal;
-  double x_min = limit, x_max = -limit, y_min = limit, y_max = -limit;
+  const double limit = is_mercator ? kMaxAlong * geometry.focal : 1e9;
+  RectBounds bounds;
   for (int j = 0; j <= kSamples; ++j) {
     for (int i = 0; i <= kSamples; ++i) {
       const Eigen::Vector2d pixel(static_cast<double>(camera.width) * i / kSamples,
                                   static_cast<double>(camera.height) * j / kSamples);
       const auto rect = second ? geometry.RectFromPixel2(pixel) : geometry.RectFromPixel1(pixel);
-      if (!rect) continue;
-      const double x = std::clamp(rect->x(), -limit, limit);
-      const double y = std::clamp(rect->y(), -limit, limit);
-      x_min = std::min(x_min, x);
-      x_max = std::max(x_max, x);
-      y_min = std::min(y_min, y);
-      y_max = std::max(y_max, y);
+      if (rect) bounds.Add(std::clamp(rect->x(), -limit, limit), rect->y());
     }
   }
+  if (bounds.x_min > bounds.x_max) return {};
+  if (is_mercator &&
+      SeesTheCut(camera, second ? geometry.cam2_from_rect : geometry.cam1_from_rect)) {
+    bounds.Add(bounds.x_min, -M_PI * geometry.focal);
+    bounds.Add(bounds.x_min, M_PI * geometry.focal);
+  }
   RectWindow window;
-  window.x0 = static_cast<int>(std::floor(x_min));
-  window.y0 = static_cast<int>(std::floor(y_min));
-  window.width = std::max(0, static_cast<int>(std::ceil(x_max)) - window.x0);
-  window.height = std::max(0, static_cast<int>(std::ceil(y_max)) - window.y0);
+  window.x0 = static_cast<int>(std::floor(bounds.x_min));
+  window.y0 = static_cast<int>(std::floor(bounds.y_min));
+  window.width = static_cast<int>(std::ceil(bounds.x_max)) - window.x0;
+  window.height = static_cast<int>(std::ceil(bounds.y_max)) - window.y0;
   return window;
 }
 
@@ -124,7 +87,7 @@ RectMap::RectMap(const PairGeometry& geometry, bool second, const RectWindow& wi
     const double y = window.y0 + 0.5 + static_cast<double>(row) * kCell;
     for (int column = 0; column < nodes_x_; ++column) {
       const double x = window.x0 + 0.5 + static_cast<double>(column) * kCell;
-      const auto pixel = camera.ImgFromCam(cam_from_rect * Eigen::Vector3d(x, y, geometry.focal));
+      const auto pixel = camera.ImgFromCam(cam_from_rect * geometry.RayAt(x, y));
       // Far outside, distortion polynomials fold back: only rays that the camera really has.
       if (!pixel || pixel->x() < -camera.width || pixel->x() > 2 * camera.width ||
           pixel->y() < -camera.height || pixel->y() > 2 * camera.height) {

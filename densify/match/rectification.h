@@ -1,6 +1,5 @@
-// A pair of posed pictures turned so that matches lie on the same row (ours: the poses are known,
-// so the search is along the epipolar line). Any camera model; lens distortion is taken out on the
-// way.
+// Pictures drawn into the rectified frame of their pair, so that matches lie on the same row
+// (ours). Lens distortion is taken out on the way.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,38 +7,14 @@
 #include <optional>
 #include <vector>
 
-#include "colmap_seapoint/base/camera.h"
 #include "colmap_seapoint/base/image.h"
-#include "colmap_seapoint/base/rigid3.h"
+#include "densify/match/pair_geometry.h"
 #include "densify/match/sample_grid.h"
 
 namespace colmap_seapoint {
 
-// The common rectified frame "rect": a pinhole at each camera centre, x axis along the baseline
-// from camera 1 to camera 2, z axis between the two viewing directions. A point at depth Z has the
-// disparity x1 - x2 = focal * baseline / Z > 0.
-struct PairGeometry {
-  Camera camera1, camera2;
-  Eigen::Matrix3d cam1_from_rect, cam2_from_rect, world_from_rect;
-  Eigen::Vector3d center1;  // world
-  double focal = 0;         // pixels
-  double baseline = 0;      // model units
-
-  // Pixel of picture 1 / 2 -> (x, y) in rect pixels (no offset: the axis is at (0, 0)).
-  std::optional<Eigen::Vector2d> RectFromPixel1(const Eigen::Vector2d& pixel) const;
-  std::optional<Eigen::Vector2d> RectFromPixel2(const Eigen::Vector2d& pixel) const;
-  // Disparity of a point at (x, y) at a distance from the centre of camera 1, model units.
-  double DisparityAtRange(double x, double y, double range) const;
-  // The point of the world at rect position (x, y) and disparity d > 0.
-  Eigen::Vector3d PointInWorld(double x, double y, double disparity) const;
-};
-
-// nullopt when the cameras coincide, or when one looks along the baseline (the epipole lies in or
-// near the picture): no rectification exists.
-std::optional<PairGeometry> MakePairGeometry(const Camera& camera1, const Rigid3d& cam1_from_world,
-                                             const Camera& camera2, const Rigid3d& cam2_from_world);
-
-// The smallest window that holds the picture's part of the rect plane, up to 72 degrees aside.
+// The smallest window that holds the picture's part of the rect frame; without what lies nearer to
+// the baseline than 6 degrees, where hardly any pair has a parallax: that is left to other pairs.
 RectWindow WindowOfPicture(const PairGeometry& geometry, bool second);
 
 // The blocks of a window that are wanted: what is asked for of a large window is often little.

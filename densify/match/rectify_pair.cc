@@ -19,6 +19,7 @@ std::vector<int> CellsOfNodes(const SampleGrid& nodes, const RectMap& map1, cons
   return cell_of_node;
 }
 
+// Nodes so near to the epipole that even the nearest place has no parallax there are not matched.
 Gate MakeGate(const PairPlan& plan, const std::vector<int>& cell_of_node) {
   Gate gate(plan.window1, plan.node_step, Gate::kClosed);
   const SampleGrid& nodes = gate.Nodes();
@@ -27,7 +28,11 @@ Gate MakeGate(const PairPlan& plan, const std::vector<int>& cell_of_node) {
     for (int a = 0; a < nodes.width; ++a, ++node) {
       if (cell_of_node[node] < 0) continue;
       const size_t cell = static_cast<size_t>(cell_of_node[node]);
-      if (plan.avoided.IsClosed(cell)) continue;
+      if (plan.avoided.IsClosed(cell) ||
+          plan.geometry.SineOfParallax(nodes.RectX(a), nodes.RectY(b), plan.disparities.max) <
+              kMinSineOfParallax) {
+        continue;
+      }
       gate[node] = Gate::kOpen;
       if (!plan.avoided.IsCovered(cell)) continue;
       gate[node] = static_cast<float>(plan.geometry.DisparityAtRange(

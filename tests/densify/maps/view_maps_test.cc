@@ -30,14 +30,12 @@ Samples Sample(const World& world, const Viewpoint& view1, const Viewpoint& view
                double normal_sign = 1) {
   const auto geometry =
       MakePairGeometry(view1.camera, view1.cam_from_world, view2.camera, view2.cam_from_world);
-  Samples samples{SampleFrameOf(*geometry, step), {}};
+  Samples samples{{*geometry, static_cast<double>(step)}, {}};
   const double reach = 2 * kWidth;
   for (double y = -reach; y < reach; y += step) {
     for (double x = -reach; x < reach; x += step) {
       const auto ray = [&](double dx, double dy) {
-        return Eigen::Vector3d(
-            geometry->world_from_rect *
-            Eigen::Vector3d((x + dx) / geometry->focal, (y + dy) / geometry->focal, 1));
+        return Eigen::Vector3d(geometry->world_from_rect * geometry->RayAt(x + dx, y + dy));
       };
       const auto point = world.Cast(geometry->center1, ray(0, 0));
       const auto right = world.Cast(geometry->center1, ray(1e-3, 0));

@@ -33,6 +33,7 @@ float At(const PartialDisparity& partial, int a, int b) {
 PairGeometry GeometryOfFocal(double focal) {
   PairGeometry geometry;
   geometry.focal = focal;
+  geometry.baseline = 1;
   return geometry;
 }
 
@@ -231,10 +232,10 @@ TEST(ConsistencyTest, RaysThatHardlyMeetMeasureNothing) {
     const double x = surface.grid.RectX(a), depth = focal / 20;
     const double angle = std::atan(x / focal) - std::atan((x * depth / focal - 1) / depth);
     const float disparity = surface.disparity[static_cast<size_t>(a)];
-    if (angle * 180 / M_PI > 1.03) {
+    if (angle * 180 / M_PI > 2.03) {
       EXPECT_EQ(disparity, 20) << x;
     }
-    if (angle * 180 / M_PI < 0.97) {
+    if (angle * 180 / M_PI < 1.97) {
       EXPECT_EQ(disparity, 0) << x;
     }
   }
