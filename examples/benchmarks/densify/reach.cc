@@ -18,23 +18,10 @@ constexpr size_t kMaxSamples = 200000;
 
 using Cloud = std::vector<Eigen::Vector3f>;
 
-// Each place once: a point's other self would be no spacing.
-PointVector PlacesOf(const Cloud& points) {
-  PointVector places;
-  places.reserve(points.size());
-  for (const Eigen::Vector3f& point : points) places.push_back(point.cast<double>());
-  const auto less = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
-  };
-  std::sort(places.begin(), places.end(), less);
-  places.erase(std::unique(places.begin(), places.end()), places.end());
-  return places;
-}
-
 // The peer's places, which know how far apart they are.
 class SpacedPlaces {
  public:
-  explicit SpacedPlaces(const Cloud& points) : places_(PlacesOf(points)), index_(places_) {}
+  explicit SpacedPlaces(const Cloud& points) : places_(DistinctPlaces(points)), index_(places_) {}
 
   size_t NumPlaces() const { return places_.size(); }
 
