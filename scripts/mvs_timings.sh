@@ -5,7 +5,8 @@
 # stereo_fusion where this colmap has CUDA, OpenMVS's DensifyPointCloud where it is on PATH (with
 # InterfaceCOLMAP). Undistortion by colmap image_undistorter counts with each of them. Writes
 # DIR/timings.csv (method,wall_s,cpu_s,gpu,machine,peak_mb,cloud_path,note), the clouds beside it;
-# what could not run is a row with the reason in its note. On a machine with CUDA it needs this file
+# the note says the size of the pictures that it worked on, or why it could not run. Niceness is that
+# of this script. On a machine with CUDA it needs this file
 # and benchmark_common.sh only; benchmark_mvs.sh --import DIR/timings.csv takes the figures home
 # (with DIR, or without: then without the clouds).
 #   --output DIR         results
@@ -87,6 +88,26 @@ undistort() {  # FOLDER
     --output_path "$1" --max_image_size "$max_image_size"
 }
 
+# Sets longer_side: pixels of the largest of the undistorted pictures in FOLDER.
+find_longer_side() {  # FOLDER
+  mkdir -p "$1/text"
+  "$colmap" model_converter --input_path "$1/sparse" --output_path "$1/text" --output_type TXT \
+    >"$output/model_converter.log" 2>&1 || return 1
+  longer_side=$(awk '!/^#/ { side = $3 > $4 ? $3 : $4; if (side + 0 > max) max = side + 0 }
+    END { print max + 0 }' "$1/text/cameras.txt")
+  [ "$longer_side" -gt 0 ]
+}
+
+# OpenMVS sets its own niceness, 10 when it is not told otherwise: the name that it has for ours.
+openmvs_priority() {
+  case $(nice) in
+    10) echo -1 ;;
+    15) echo -2 ;;
+    19) echo -3 ;;
+    *) echo 0 ;;
+  esac
+}
+
 run_colmap() {
   local method="COLMAP patch_match_stereo + stereo_fusion" dense=$output/colmap
   if ! command -v "$colmap" >/dev/null; then
@@ -98,11 +119,11 @@ run_colmap() {
     return
   fi
   start_method
-  if undistort "$dense" &&
+  if undistort "$dense" && find_longer_side "$dense" &&
     step patch_match_stereo "$colmap" patch_match_stereo --workspace_path "$dense" &&
     step stereo_fusion "$colmap" stereo_fusion --workspace_path "$dense" \
       --output_path "$output/colmap.ply"; then
-    finish_method "$method" "${gpu:-unknown}" "$output/colmap.ply" ""
+    finish_method "$method" "${gpu:-unknown}" "$output/colmap.ply" "longer side $longer_side px"
   else
     cannot "$method" "a step failed; see $output/*.log"
   fi
@@ -115,13 +136,15 @@ run_openmvs() {
     command -v "$program" >/dev/null || { cannot "$method" "no $program on PATH"; return; }
   done
   start_method
-  if undistort "$dense" &&
+  # Level 0 alone is not full resolution: what is larger than --max-resolution (2560) is shrunk.
+  if undistort "$dense" && find_longer_side "$dense" &&
     step InterfaceCOLMAP InterfaceCOLMAP -w "$dense" -i "$dense" -o "$dense/scene.mvs" \
-      --image-folder "$dense/images" &&
+      --image-folder "$dense/images" --process-priority "$(openmvs_priority)" &&
     step DensifyPointCloud DensifyPointCloud -w "$dense" -i "$dense/scene.mvs" \
-      -o "$dense/scene_dense.mvs" --resolution-level 0; then
+      -o "$dense/scene_dense.mvs" --resolution-level 0 --max-resolution "$longer_side" \
+      --process-priority "$(openmvs_priority)"; then
     [ ! -f "$dense/scene_dense.ply" ] || mv "$dense/scene_dense.ply" "$output/openmvs.ply"
-    finish_method "$method" "" "$output/openmvs.ply" ""
+    finish_method "$method" "" "$output/openmvs.ply" "longer side $longer_side px"
   else
     cannot "$method" "a step failed; see $output/*.log"
   fi

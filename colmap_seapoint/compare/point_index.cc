@@ -1,6 +1,5 @@
 #include "colmap_seapoint/compare/point_index.h"
 
-#include <cstdint>
 #include <nanoflann.hpp>
 
 namespace colmap_seapoint {
@@ -57,6 +56,15 @@ void PointIndex::Nearest(const Eigen::Vector3d& place, NearestOf what, double* s
   NearestResult result{*squared, what == NearestOf::kOtherPlace};
   tree_->index.findNeighbors(result, place.data(), nanoflann::SearchParams());
   *squared = result.best;
+}
+
+std::vector<uint32_t> PointIndex::NearestPositions(const Eigen::Vector3d& place,
+                                                   size_t count) const {
+  if (!tree_) return {};
+  std::vector<uint32_t> positions(count);
+  std::vector<double> squared(count);
+  positions.resize(tree_->index.knnSearch(place.data(), count, positions.data(), squared.data()));
+  return positions;
 }
 
 }  // namespace colmap_seapoint

@@ -1,8 +1,10 @@
 // The nearest of many points, exactly.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <memory>
+#include <vector>
 
 #include "colmap_seapoint/compare/point_vector.h"
 
@@ -21,6 +23,9 @@ class PointIndex {
   ~PointIndex();
   // Lowers *squared to that of the nearest point when one is nearer than that.
   void Nearest(const Eigen::Vector3d& place, NearestOf what, double* squared) const;
+  // Positions in `points` of the `count` points nearest to the place, the nearest first; of fewer
+  // when there are fewer.
+  std::vector<uint32_t> NearestPositions(const Eigen::Vector3d& place, size_t count) const;
 
  private:
   struct Tree;

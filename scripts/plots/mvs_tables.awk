@@ -84,6 +84,18 @@ FNR == 1 {
   if (!(method in known)) { known[method] = 1; all_methods[++num_all] = method }
   wall[$1, method] = $5; cpu[$1, method] = $6; gpu[$1, method] = $7; machine[$1, method] = $8
   peak[$1, method] = $9; cloud[$1, method] = $10; note[$1, method] = $11
+  if (match($11, /^longer side [0-9]+ px/)) resolution[$1, method] = substr($11, 1, RLENGTH)
+}
+
+# The note without what is no reason for a missing figure.
+function reason_of(set, m,    text) {
+  text = note[set, m]
+  sub(/^longer side [0-9]+ px(; )?/, "", text)
+  return cell(text, "not given")
+}
+
+function label(set, m) {
+  return m (resolution[set, m] == "" ? "" : ", " resolution[set, m])
 }
 
 function write_csv(    s, i, set, m) {
@@ -126,11 +138,11 @@ function method_rows(set,    i, m, reason, why, truth) {
   print "|---|---|---|---|---|---|---|---|---|---|" > md
   for (i = 1; i <= num_methods[set]; ++i) {
     m = methods[set, i]
-    reason = cell(note[set, m], "not given")
+    reason = reason_of(set, m)
     why = reason ~ /^not run/ ? "not run" : reason
     truth = truth_1[set, m] == "" ? (has_truth[set] ? why : "no truth") : \
       truth_1[set, m] " / " truth_2[set, m] " / " truth_4[set, m] " %, " truth_cover[set, m] " %"
-    print "| " m " | " cell(cpu[set, m], reason) " | " \
+    print "| " label(set, m) " | " cell(cpu[set, m], reason) " | " \
       cell(ratio(cpu[set, m], megapixels[set], "%.3f"), why) " | " cell(wall[set, m], why) " | " \
       cell(peak[set, m], why) " | " cell(points[set, m], why) " | " \
       cell(shorten(density[set, m], 4), why) " | " cell(in_cell[set, m], why) " | " truth " | " \
@@ -178,11 +190,13 @@ function paper_row(name, figures, kind,    s, set, line, text) {
     if (kind == "poses") text = seconds(poses[set], "not measured here: the model came without a report")
     if (kind == "speed") text = "not run: no such pipeline here"
     if (kind == "mvs") text = mvs_method[set] == "" ? cell(mvs_why[set], "none") : \
-      wall[set, mvs_method[set]] " s (" mvs_method[set] ")"
+      wall[set, mvs_method[set]] " s (" label(set, mvs_method[set]) ")"
     if (kind == "complete" || kind == "partial")
       text = seconds(wall[set, "ours " kind], note[set, "ours " kind])
     if (kind == "mvs ratio") text = mvs_method[set] == "" ? "no MVS" : \
       cell(ratio(wall[set, mvs_method[set]], wall[set, "ours partial"], "%.1f"), "no figure")
+    if (kind == "mvs cpu ratio") text = mvs_method[set] == "" ? "no MVS" : \
+      cell(ratio(cpu[set, mvs_method[set]], cpu[set, "ours partial"], "%.1f"), "no figure")
     if (kind == "ratio")
       text = cell(ratio(wall[set, "ours complete"], wall[set, "ours partial"], "%.2f"), "no figure")
     if (kind == "cpu ratio")
@@ -214,6 +228,7 @@ function paper_table(    s, line) {
   paper_row("Incremental (complete)", "2.81 h | 3.60 h | 6.08 h | 3.67 h", "complete")
   paper_row("Incremental (partial)", "0.74 h | 1.02 h | 1.77 h | 1.02 h", "partial")
   paper_row("MVS : partial", "40.7 | 24.2 | 19.3 | 26.4", "mvs ratio")
+  paper_row("MVS : partial, CPU", "not given | not given | not given | not given", "mvs cpu ratio")
   paper_row("complete : partial", "3.80 | 3.53 | 3.44 | 3.60", "ratio")
   paper_row("complete : partial, CPU", "not given | not given | not given | not given", "cpu ratio")
 }

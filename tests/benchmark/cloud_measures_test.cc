@@ -47,6 +47,12 @@ TEST(CloudMeasuresTest, NearestPointAgainstBruteForce) {
   EXPECT_TRUE(std::isinf(NearestPoint({}).Distance({0, 0, 0})));
 }
 
+TEST(CloudMeasuresTest, TwinsAreOnePlace) {
+  const PointVector places = DistinctPlaces({{2, 0, 0}, {1, 5, 0}, {2, 0, 0}, {1, 4, 9}});
+  EXPECT_EQ(places, (PointVector{{1, 4, 9}, {1, 5, 0}, {2, 0, 0}}));
+  EXPECT_TRUE(DistinctPlaces({}).empty());
+}
+
 TEST(CloudMeasuresTest, ShareNear) {
   PairedCloud reference, cloud;
   AddGrid(0, 0, 10, 0, &reference);

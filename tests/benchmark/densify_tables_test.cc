@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -87,6 +88,10 @@ TEST(DensifyTablesTest, CompletionTruthProgramAndHoldOut) {
   EXPECT_NE(text.find("| cave | all | 100 | 20 | 10 | 50.0 | – | – | – | – | – | – |"),
             std::string::npos)
       << text;
+  // Every cell has its title.
+  const size_t head = text.find("| set", text.find("Held-out"));
+  const std::string titles = text.substr(head, text.find('\n', head) - head);
+  EXPECT_EQ(std::count(titles.begin(), titles.end(), '|'), 13) << titles;
   EXPECT_NE(
       text.find("| mole | 0 | 10.0 | 3.00 | 0.00 | 2.00 | 1.50 | 0.00 | 0.3000 | 0 | default"),
       std::string::npos)

@@ -39,6 +39,15 @@ double MeanLayers(const PairedCloud& cloud, double cell) {
                         : static_cast<double>(entries.size()) / static_cast<double>(num_cells);
 }
 
+PointVector DistinctPlaces(const std::vector<Eigen::Vector3f>& points) {
+  PointVector places = ToDoubles(points);
+  std::sort(places.begin(), places.end(), [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+  });
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  return places;
+}
+
 NearestPoint::NearestPoint(const std::vector<Eigen::Vector3f>& points)
     : points_(ToDoubles(points)), index_(points_) {}
 

@@ -18,6 +18,9 @@ struct PairedCloud {
 // for the seams between pairs. NaN for an empty cloud.
 double MeanLayers(const PairedCloud& cloud, double cell);
 
+// Each place once, in ascending order: a point's twin would be no spacing.
+PointVector DistinctPlaces(const std::vector<Eigen::Vector3f>& points);
+
 class NearestPoint {
  public:
   explicit NearestPoint(const std::vector<Eigen::Vector3f>& points);

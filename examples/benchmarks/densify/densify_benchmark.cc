@@ -1,7 +1,8 @@
 // densify_benchmark measure: complete against partial densification on a model (paper 3, Tables 2
 // and 3), with the exact truth when it is a demo survey. holdout: sparse points kept from the
 // densifier as witnesses. program: the whole program against decoding. tables: of all sets measured
-// so far. scripts/benchmark_densify.sh runs them.
+// so far. scripts/benchmark_densify.sh runs them. reach: a cloud against that of a peer.
+// holes: what a cloud lacks inside its own outline.
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -11,10 +12,15 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/natural_order.h"
+#include "colmap_seapoint/io/cloud/ply.h"
+#include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/image/image_file.h"
 #include "examples/benchmarks/densify/densify_tables.h"
+#include "examples/benchmarks/densify/holes.h"
 #include "examples/benchmarks/densify/measure_densify.h"
 #include "examples/benchmarks/densify/measure_program.h"
+#include "examples/benchmarks/densify/reach.h"
 #include "examples/subcommands.h"
 
 namespace colmap_seapoint {
@@ -27,6 +33,8 @@ constexpr char kUsage[] =
     "densify_benchmark holdout [--output_path SETS/NAME.holdout.csv] SET\n"
     "densify_benchmark program --binary colmap_seapoint [--output_path SETS/NAME.program.csv] SET\n"
     "densify_benchmark tables --input_path SETS --output_path DIR\n"
+    "densify_benchmark reach --input_path MODEL --cloud_path A.ply --reference_path PEER.ply\n"
+    "densify_benchmark holes --cloud_path A.ply [--spacing S] [--output_path MAP.png]\n"
     "SET: --survey_path DIR (exact cameras), or --input_path MODEL --image_path DIR, or both\n"
     "densify_benchmark <command> -h lists the options.\n";
 
@@ -204,6 +212,51 @@ int Tables(const std::vector<std::string>& arguments) {
   return 0;
 }
 
+std::vector<Eigen::Vector3f> ReadPoints(const std::string& path) {
+  std::vector<Eigen::Vector3f> points;
+  for (const CloudPoint& point : ReadCloud(path)) points.push_back(point.xyz);
+  return points;
+}
+
+int ReachCommand(const std::vector<std::string>& arguments) {
+  std::string input_path, cloud_path, reference_path;
+  po::options_description description("densify_benchmark reach");
+  auto add = description.add_options();
+  add("help,h", "this text");
+  add("input_path", po::value(&input_path)->required(), "COLMAP model of both clouds");
+  add("cloud_path", po::value(&cloud_path)->required(), "our cloud");
+  add("reference_path", po::value(&reference_path)->required(), "the peer's cloud");
+  if (!ParseOptions(description, arguments)) return 0;
+  std::vector<Eigen::Vector3f> centers;
+  for (const PosedImage& image :
+       ReadSparseModel(input_path, ModelContent::kPosesAndPoints).images) {
+    centers.push_back(image.cam_from_world.OriginInSource().cast<float>());
+  }
+  if (centers.empty()) throw Error(input_path, "the model has no pictures", "choose another one");
+  std::cout << ReachText(MeasureReach(ReadPoints(cloud_path), ReadPoints(reference_path), centers));
+  return 0;
+}
+
+int HolesCommand(const std::vector<std::string>& arguments) {
+  std::string cloud_path, output_path;
+  double spacing = 0;
+  size_t num_holes = 10;
+  po::options_description description("densify_benchmark holes");
+  auto add = description.add_options();
+  add("help,h", "this text");
+  add("cloud_path", po::value(&cloud_path)->required(), "the cloud");
+  add("spacing", Default(&spacing), "between samples, model units; 0 = measured");
+  add("num_holes", Default(&num_holes), "so many of the largest are listed");
+  add("output_path", po::value(&output_path), "PNG of the map to write");
+  if (!ParseOptions(description, arguments)) return 0;
+  if (!(spacing >= 0)) throw UsageError("0 <= spacing is required");
+  const std::vector<CloudPoint> cloud = ReadCloud(cloud_path);
+  const HoleMap map = FindHoles(cloud, spacing > 0 ? spacing : MedianSpacing(cloud));
+  if (!output_path.empty()) WriteImage(output_path, map.picture);
+  std::cout << HolesText(map, num_holes);
+  return 0;
+}
+
 }  // namespace
 }  // namespace colmap_seapoint
 
@@ -213,5 +266,7 @@ int main(int argc, char** argv) {
                         {{"measure", Measure},
                          {"holdout", HoldOutCommand},
                          {"program", Program},
-                         {"tables", Tables}});
+                         {"tables", Tables},
+                         {"reach", ReachCommand},
+                         {"holes", HolesCommand}});
 }

@@ -29,7 +29,7 @@ each in full. `all` leaves out what any earlier pair has reconstructed and adds 
 - held-out points: every fifth point of the model is kept from the densifier, with the SeaPoints there;
   looked for are those with three views and a reprojection error up to a pixel. GSD: depth in the first
   view over focal length. A point's own uncertainty: its reprojection error over the tangent of its
-  largest parallax.
+  largest parallax; median. Sure ones: own uncertainty up to 1 GSD.
 - memory: peak during densification above what was held before, cloud not counted.
 
 )";
@@ -160,10 +160,11 @@ std::string StageTable(const std::vector<DensifyRow>& rows) {
 }
 
 std::string HoldOutTable(const std::vector<HoldOutRow>& rows) {
-  std::string table = Head("Held-out sparse points",
-                           {"set", "variant", "points", "held out", "of them 3 views, 1 px",
-                            "passed within 3 GSD", "within 3 sample spacings",
-                            "any point within 10 GSD", "of those, within 3 GSD", "median GSD"});
+  std::string table =
+      Head("Held-out sparse points",
+           {"set", "variant", "points", "held out", "of them 3 views, 1 px", "passed within 3 GSD",
+            "within 3 sample spacings", "any point within 10 GSD", "of those, within 3 GSD",
+            "median GSD", "own uncertainty in depth, GSD", "of the sure ones, within 3 GSD"});
   for (const HoldOutRow& row : rows) {
     table += Line({row.set, row.variant, Text(row.points, "%.0f"), Text(row.held, "%.0f"),
                    Text(row.eligible, "%.0f"), Percent(row.passed), Percent(row.passed_spacing),
