@@ -1,11 +1,11 @@
-#include "examples/survey/height_field.h"
+#include "examples/survey/scene/height_field.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "examples/survey/seabed.h"
+#include "examples/survey/scene/seabed.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -53,7 +53,7 @@ TEST(HeightFieldTest, RayFindsTheFirstOfManyHits) {
     double first = -1;
     for (double s = 0; s < 2.5 && first < 0; s += 2e-5) {
       const Eigen::Vector3d p = origin + s * ray;
-      if (!field.Contains(p.x(), p.y())) break;
+      if (!field.Grid().Contains(p.x(), p.y())) break;
       if (p.z() <= field.Height(p.x(), p.y())) first = s;
     }
     ASSERT_EQ(first >= 0, t.has_value()) << k;

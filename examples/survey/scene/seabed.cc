@@ -1,10 +1,10 @@
-#include "examples/survey/seabed.h"
+#include "examples/survey/scene/seabed.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "colmap_seapoint/base/parallel.h"
-#include "examples/survey/stones.h"
+#include "examples/survey/scene/stones.h"
 
 namespace colmap_seapoint {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "examples/survey/height_field.h"
-#include "examples/survey/noise.h"
+#include "examples/survey/scene/height_field.h"
+#include "examples/survey/scene/noise.h"
 
 namespace colmap_seapoint {
 

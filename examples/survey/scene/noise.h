@@ -41,6 +41,13 @@ struct GridSpec {
 
   double X(int i) const { return static_cast<double>(ix0 + i) * step; }
   double Y(int j) const { return static_cast<double>(iy0 + j) * step; }
+  double MinX() const { return X(0); }
+  double MinY() const { return Y(0); }
+  double MaxX() const { return X(nx - 1); }
+  double MaxY() const { return Y(ny - 1); }
+  bool Contains(double x, double y) const {
+    return x >= MinX() && y >= MinY() && x <= MaxX() && y <= MaxY();
+  }
   size_t Size() const { return static_cast<size_t>(nx) * static_cast<size_t>(ny); }
 };
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "examples/survey/noise.h"
+#include "examples/survey/scene/noise.h"
 
 namespace colmap_seapoint {
 

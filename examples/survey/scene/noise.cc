@@ -1,4 +1,4 @@
-#include "examples/survey/noise.h"
+#include "examples/survey/scene/noise.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/parallel.h"
-#include "examples/survey/seabed.h"
+#include "examples/survey/scene/seabed.h"
 
 namespace colmap_seapoint {
 namespace {

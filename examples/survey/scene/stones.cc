@@ -1,4 +1,4 @@
-#include "examples/survey/stones.h"
+#include "examples/survey/scene/stones.h"
 
 #include <algorithm>
 #include <cmath>

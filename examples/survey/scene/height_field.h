@@ -7,9 +7,16 @@
 #include <optional>
 #include <vector>
 
-#include "examples/survey/noise.h"
+#include "examples/survey/scene/noise.h"
 
 namespace colmap_seapoint {
+
+// The largest height in every block of `size` x `size` cells: a ray above it skips the block.
+struct HeightBlocks {
+  int size = 1;
+  int nx = 0;
+  std::vector<float> max;
+};
 
 class HeightField {
  public:
@@ -19,15 +26,11 @@ class HeightField {
 
   const GridSpec& Grid() const { return grid_; }
   const Field& Heights() const { return heights_; }
-  double CellSize() const { return grid_.step; }
-  double MinX() const { return grid_.X(0); }
-  double MinY() const { return grid_.Y(0); }
-  double MaxX() const { return grid_.X(grid_.nx - 1); }
-  double MaxY() const { return grid_.Y(grid_.ny - 1); }
   float MinHeight() const { return min_height_; }
   float MaxHeight() const { return max_height_; }
-  bool Contains(double x, double y) const {
-    return x >= MinX() && y >= MinY() && x <= MaxX() && y <= MaxY();
+  float Node(int i, int j) const {
+    return heights_[static_cast<size_t>(j) * static_cast<size_t>(grid_.nx) +
+                    static_cast<size_t>(i)];
   }
 
   // Outside the field: the height of the nearest place on its edge.
@@ -45,23 +48,11 @@ class HeightField {
   double Distance(const Eigen::Vector3d& point, double limit) const;
 
  private:
-  struct Level {  // largest height in every block of `size` x `size` cells
-    int size;
-    int nx;
-    std::vector<float> max;
-  };
-  float Node(int i, int j) const {
-    return heights_[static_cast<size_t>(j) * static_cast<size_t>(grid_.nx) +
-                    static_cast<size_t>(i)];
-  }
-  void BuildLevels();
-  double DistanceToCell(const Eigen::Vector3d& local, int i, int j, double best) const;
-
   GridSpec grid_;
   Field heights_;
   float min_height_ = 0;
   float max_height_ = 0;
-  std::vector<Level> levels_;  // fine to coarse
+  std::vector<HeightBlocks> levels_;  // fine to coarse
 };
 
 }  // namespace colmap_seapoint
