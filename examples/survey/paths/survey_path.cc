@@ -84,8 +84,9 @@ Ring RingOf(const SurveyOptions& options, int strip) {
 void AddRing(const SurveyOptions& options, int strip, std::vector<Station>* stations) {
   const Ring ring = RingOf(options, strip);
   const double step = kRingDeg * kRadPerDeg * (1 - options.forward_overlap);
-  const int count = options.images_per_strip > 0 ? options.images_per_strip
-                                                 : static_cast<int>(std::ceil(2 * kPi / step));
+  const int count = options.images_per_strip > 0
+                        ? options.images_per_strip
+                        : static_cast<int>(std::ceil(2 * kPi / step - 1e-9));
   for (int station = 0; station < count; ++station) {
     // The rings' pictures do not stand one above the other.
     const double angle = 2 * kPi * (station + 0.5 * (strip % 2)) / count;
@@ -99,7 +100,7 @@ void AddDive(const SurveyOptions& options, int strip, std::vector<Station>* stat
   const double way = std::log(kDescentFrom);
   const double steps = way / -std::log(std::max(options.forward_overlap, 0.1));
   const int count = options.images_per_strip > 0 ? options.images_per_strip
-                                                 : static_cast<int>(std::ceil(steps)) + 1;
+                                                 : static_cast<int>(std::ceil(steps - 1e-9)) + 1;
   for (int station = 0; station < count; ++station) {
     const double left = count > 1 ? 1 - station / (count - 1.0) : 0;
     stations->push_back({0, strip * TrackSteps(options).side, std::exp(way * left), 0});

@@ -103,7 +103,8 @@ Sheet::Sheet(int nx, int ny, std::vector<Eigen::Vector3f> nodes, double step)
         for (int j = by * size; j <= std::min(ny - 1, (by + 1) * size); ++j) {
           for (int i = bx * size; i <= std::min(nx - 1, (bx + 1) * size); ++i) {
             const Eigen::Array3f node =
-                nodes_[static_cast<size_t>(j) * static_cast<size_t>(nx) + static_cast<size_t>(i)];
+                nodes_[static_cast<size_t>(j) * static_cast<size_t>(nx) + static_cast<size_t>(i)]
+                    .array();
             box.min = box.min.min(node);
             box.max = box.max.max(node);
           }

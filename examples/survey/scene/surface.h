@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <utility>
 
 #include "colmap_seapoint/base/rigid3.h"
 #include "examples/survey/scene/height_field.h"
