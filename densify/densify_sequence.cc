@@ -1,32 +1,181 @@
 #include "densify/densify_sequence.h"
 
 #include <algorithm>
-#include <numeric>
+#include <utility>
 
-#include "colmap_seapoint/base/natural_order.h"
-#include "densify/sequence/sequence_state.h"
+#include "densify/overlap/coverage.h"
+#include "densify/run_pair.h"
+#include "densify/sequence/completion.h"
+#include "densify/sequence/covisibility.h"
+#include "densify/sequence/pair_selection.h"
 
 namespace colmap_seapoint {
 
 namespace {
 
-std::vector<int> SequenceOrder(const SparseModel& model) {
-  std::vector<int> order(model.images.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int a, int b) {
-    return NaturalLess(model.images[static_cast<size_t>(a)].name,
-                       model.images[static_cast<size_t>(b)].name);
-  });
-  return order;
+constexpr int kMaxPartners = 3;  // of a picture, in the completion pass
+
+// What is covered is known only where all earlier views count.
+bool Completes(const SequenceContext& context) {
+  return context.options.completion && context.redundancy == Redundancy::kAll;
 }
 
-// The right pictures of a rig behind all others; else the order is kept.
-std::vector<int> TrackFirst(std::vector<int> order, const StereoRig& rig) {
-  if (rig.is_right.empty()) return order;
-  std::stable_partition(order.begin(), order.end(), [&](int image_idx) {
-    return !rig.is_right[static_cast<size_t>(image_idx)];
-  });
-  return order;
+// Where influence areas put the overlap of a picture with the first one of the pair before (paper
+// 2.5, Figures 10 and 11).
+InfluenceMask MaskOn(const SequenceContext& context, const SequenceMemory& memory, int candidate) {
+  return MakeInfluenceMask(context.Cells(candidate), context.SeaPoints(candidate)->points,
+                           *context.Matches(memory.previous_first, candidate), memory.previous,
+                           context.InfluenceRadius(candidate));
+}
+
+// Mask and labels against the pair before (paper 2.5, 2.7), or against all that is known (ours).
+PairOverlap AssessOverlap(const SequenceContext& context, const SequenceMemory& memory, int first) {
+  const auto seapoints = context.SeaPoints(first);
+  const CellGrid cells = context.Cells(first);
+  PairOverlap overlap = WithoutPrevious(cells, seapoints->points);
+  if (memory.previous_first >= 0) {
+    overlap = OverlapWithPrevious(MaskOn(context, memory, first), seapoints->points,
+                                  *context.Matches(memory.previous_first, first), memory.previous,
+                                  context.InfluenceRadius(first));
+  }
+  if (context.redundancy == Redundancy::kSequential) return overlap;
+  const View view = context.track.ViewOf(first);
+  return OverlapWithAll(std::move(overlap),
+                        ProjectCoverage(memory.footprints, view.camera, view.cam_from_world, cells),
+                        seapoints->points);
+}
+
+// Paper 2.6: SeaPoints in the overlap area form no seeds. Against surface that is known (ours) the
+// pair itself decides, since a new object may stand in front of it.
+std::vector<SeaPointLabel> LabelsThatCount(const SequenceContext& context,
+                                           const PairOverlap& overlap) {
+  const bool by_label =
+      context.mode == DensificationMode::kPartial && !overlap.known.closed.empty();
+  return by_label ? overlap.labels : std::vector<SeaPointLabel>();
+}
+
+// Paper 2.7: which SeaPoints of the pair's first picture are processed, and which ones the next
+// pair shall try again. What was known before counts as filled, though not by this pair.
+void Remember(const SequenceContext& context, const PairTask& task, std::vector<float> filled,
+              SequenceMemory* memory) {
+  const KnownCells& known = task.overlap.known;
+  filled.resize(known.grid.Size(), 0.0f);
+  for (size_t cell = 0; cell < filled.size(); ++cell) {
+    if (!known.IsNew(cell)) filled[cell] = 1;
+  }
+  memory->previous_first = task.first;
+  memory->previous.points = context.SeaPoints(task.first)->points;
+  memory->previous.labels = RelabelProcessed(known.grid, filled, memory->previous.points,
+                                             context.InfluenceRadius(task.first));
+  memory->previous.grid = known.grid;
+  memory->previous.filled = std::move(filled);
+}
+
+// Overlap, labels, seeds, propagation, reprojection (paper 2.5 to 2.7).
+void DensifyNewAreas(const SequenceContext& context, int first, int second, SequenceMemory* memory,
+                     SequenceReport* report) {
+  // Decoded while this pair is densified: most often they are the next pair.
+  for (const int ahead : {second + 1, second + 2}) {
+    if (ahead < context.track.Length()) context.pictures->Prefetch(context.track.ImageIdx(ahead));
+  }
+  PairTask task{first, second, "sequence", AssessOverlap(context, *memory, first), {}};
+  task.seeds = FormSeeds(context, first, second, LabelsThatCount(context, task.overlap));
+  PairOutcome pair = RunPair(context, task);
+  Deliver(context, task, pair, memory, report);
+  Remember(context, task, std::move(pair.result.filled), memory);
+}
+
+// Figure 3: pair by pair along the track.
+void DensifyTrack(const SequenceContext& context, const std::function<void(int64_t)>& progress,
+                  SequenceMemory* memory, SequenceReport* report) {
+  const PartialDensificationOptions& options = context.options;
+  const SecondRules rules{options.min_num_seeds, options.min_mean_motion, Completes(context)};
+  int first = 0;
+  while (context.track.CanStartPair(first)) {
+    const SecondChoice second =
+        SelectSecond(context.model, context.track, first, rules, context.pictures);
+    if (second.position >= 0) {
+      DensifyNewAreas(context, first, second.position, memory, report);
+      const NextChoice next = SelectNext(
+          context.track, first, second.position, options.max_overlap,
+          [&](int candidate) { return MaskOn(context, *memory, candidate).OverlapRate(); });
+      for (const int skipped : next.passed_over) {
+        report->pairs.push_back(
+            SkippedRow(context, skipped, "overlaps too much with the pair before"));
+      }
+      first = next.position;
+    } else {
+      report->pairs.push_back(SkippedRow(context, first, second.why_none));
+      ++first;
+    }
+    progress(first);
+  }
+}
+
+std::vector<CompletionCandidate> CandidatesOf(const SequenceContext& context, int position,
+                                              const std::vector<int>& covisible,
+                                              const SequenceMemory& memory) {
+  std::vector<CompletionCandidate> candidates;
+  for (const int partner : covisible) {
+    if (memory.tried_pairs.count(std::minmax(position, partner)) > 0) continue;
+    candidates.push_back({partner, context.track.ViewOf(partner)});
+  }
+  return candidates;
+}
+
+void Drop(int position, std::vector<CompletionCandidate>* candidates) {
+  candidates->erase(
+      std::find_if(candidates->begin(), candidates->end(),
+                   [&](const auto& candidate) { return candidate.position == position; }));
+}
+
+// All matches and triangulated points of the pair are seeds, and the rim of what is covered.
+PairTask TaskOf(const SequenceContext& context, int position, const CompletionTarget& target,
+                const CompletionView& seen) {
+  PairTask task{position, target.partner, "completion", {}, {}};
+  task.overlap.rate = seen.coverage.CoveredShare();
+  task.overlap.known = {seen.coverage.grid, target.closed, {}};
+  task.seeds = FormSeeds(context, position, target.partner, {});
+  const std::vector<PixelPair> rim =
+      SeedsAlongRim(context.track.ViewOf(position), context.track.ViewOf(target.partner), seen);
+  task.seeds.insert(task.seeds.end(), rim.begin(), rim.end());
+  return task;
+}
+
+void CompletePicture(const SequenceContext& context, int position,
+                     const std::vector<int>& covisible, GivenUp* given_up, SequenceMemory* memory,
+                     SequenceReport* report) {
+  const View view = context.track.ViewOf(position);
+  std::vector<CompletionCandidate> candidates = CandidatesOf(context, position, covisible, *memory);
+  CompletionView seen = LookAt(view, context.Cells(position), memory->footprints, *given_up);
+  for (int tries = 0; tries < kMaxPartners && !candidates.empty(); ++tries) {
+    seen.predicted_range =
+        PredictRanges(context.model, context.track.Image(position), view, seen.coverage);
+    const CompletionTarget target = SelectCompletionPartner(view, seen, candidates);
+    if (target.partner < 0) return;
+    Drop(target.partner, &candidates);
+    const PairTask task = TaskOf(context, position, target, seen);
+    const PairOutcome pair = RunPair(context, task);
+    Deliver(context, task, pair, memory, report);
+    if (pair.result.failure.empty()) {
+      AddCoverage(memory->footprints.back(), view.camera, view.cam_from_world, &seen.coverage);
+    }
+    NoteFailures(view, target, pair.result.filled, &seen, given_up);
+  }
+}
+
+// The completion pass (ours): picture by picture, each with up to three partners, what two pictures
+// see, of whatever strip, and no pair has covered.
+void CompleteSequence(const SequenceContext& context, const std::function<void(int64_t)>& progress,
+                      SequenceMemory* memory, SequenceReport* report) {
+  const std::vector<std::vector<int>> covisible =
+      CovisiblePictures(context.model, context.track.Order());
+  GivenUp given_up;
+  for (int position = 0; position < context.track.NumPictures(); ++position) {
+    CompletePicture(context, position, covisible[static_cast<size_t>(position)], &given_up, memory,
+                    report);
+    progress(position + 1);
+  }
 }
 
 }  // namespace
@@ -34,29 +183,25 @@ std::vector<int> TrackFirst(std::vector<int> order, const StereoRig& rig) {
 SequenceReport DensifySequence(const SparseModel& model, PictureSource* source,
                                const PartialDensificationOptions& options, int num_threads,
                                const SequenceCallbacks& callbacks, const StereoRig& rig) {
-  SequenceState state(model, TrackFirst(SequenceOrder(model), rig), rig, source, options,
-                      num_threads, callbacks);
-  const int num_pictures = state.NumPictures();
-  const int64_t total = num_pictures * (options.completion ? 2 : 1);
-
-  int first = 0;
-  while (state.CanStartPair(first)) {
-    const int second = state.SelectSecond(first);
-    if (second < num_pictures) {
-      state.DensifyNewAreas(first, second);
-      first = state.SelectNextFirst(first, second);
-    } else {
-      ++first;
-    }
-    if (callbacks.progress) callbacks.progress(first, total);
+  const Track track(model, rig);
+  PictureCache pictures(source);
+  const SequenceContext context{
+      model,       track,     options,  options.Mode(), options.AgainstWhat(),
+      num_threads, callbacks, &pictures};
+  const int64_t num_pictures = track.NumPictures();
+  const int64_t total = num_pictures * (Completes(context) ? 2 : 1);
+  const auto progress = [&](int64_t done) {
+    if (callbacks.progress) callbacks.progress(done, total);
+  };
+  SequenceMemory memory;
+  SequenceReport report;
+  DensifyTrack(context, progress, &memory, &report);
+  if (Completes(context)) {
+    CompleteSequence(
+        context, [&](int64_t done) { progress(num_pictures + done); }, &memory, &report);
   }
-  if (options.completion) {
-    for (int position = 0; position < num_pictures; ++position) {
-      state.Complete(position);
-      if (callbacks.progress) callbacks.progress(num_pictures + position + 1, total);
-    }
-  }
-  return state.TakeReport();
+  report.left_out = pictures.LeftOut();
+  return report;
 }
 
 }  // namespace colmap_seapoint

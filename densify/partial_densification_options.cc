@@ -49,4 +49,12 @@ std::string PartialDensificationOptions::Check() const {
   return "";
 }
 
+DensificationMode PartialDensificationOptions::Mode() const {
+  return mode == "complete" ? DensificationMode::kComplete : DensificationMode::kPartial;
+}
+
+Redundancy PartialDensificationOptions::AgainstWhat() const {
+  return redundancy == "all" ? Redundancy::kAll : Redundancy::kSequential;
+}
+
 }  // namespace colmap_seapoint

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "feature/descriptor/rbrief_descriptor.h"
 #include "feature/descriptor/sift_descriptor.h"
@@ -13,40 +14,77 @@ namespace {
 
 constexpr double kLevelScale = 1.4142135623730951;  // between neighbouring pyramid levels
 
-GrayImage Resize(const GrayImage& image, int width, int height) {
-  GrayImage resized(width, height);
-  const cv::Mat source(image.height, image.width, CV_8U, const_cast<uint8_t*>(image.data.data()));
-  cv::Mat target(height, width, CV_8U, resized.data.data());
-  cv::resize(source, target, target.size(), 0, 0, cv::INTER_AREA);
-  return resized;
-}
+// One level of the pyramid (paper 4).
+struct Level {
+  int width = 0, height = 0;          // pixels
+  double scale_x = 1, scale_y = 1;    // from its pixels to the picture's
+  SeaPointExtractionOptions options;  // with its share of the target interval
+};
 
-// The target interval's share of a level: proportional to the level's area (paper 4: fewer points
-// at coarser scales). The finest level takes what rounding leaves over.
-int LevelShare(int count, int level, int num_levels) {
+// The shares of `count` points by level, finest first: in proportion to the levels' areas (paper 4:
+// fewer points at coarser scales). The finest level takes what rounding leaves over.
+std::vector<int> Shares(int count, int num_levels) {
   double total = 0;
   for (int l = 0; l < num_levels; ++l) total += std::pow(kLevelScale, -2 * l);
-  if (level > 0) return static_cast<int>(count * std::pow(kLevelScale, -2 * level) / total);
-  int finest = count;
-  for (int l = 1; l < num_levels; ++l) finest -= LevelShare(count, l, num_levels);
-  return finest;
+  std::vector<int> shares = {count};
+  for (int l = 1; l < num_levels; ++l) {
+    shares.push_back(static_cast<int>(count * std::pow(kLevelScale, -2 * l) / total));
+    shares[0] -= shares.back();
+  }
+  return shares;
 }
 
-SeaPointExtractionOptions LevelOptions(const SeaPointExtractionOptions& options, int level) {
-  SeaPointExtractionOptions at_level = options;
-  at_level.min_num_features =
-      std::max(1, LevelShare(options.min_num_features, level, options.num_levels));
-  at_level.max_num_features =
-      std::max(1, LevelShare(options.max_num_features, level, options.num_levels));
-  return at_level;
+std::vector<Level> PlanLevels(const GrayImage& picture, const SeaPointExtractionOptions& options) {
+  const std::vector<int> least = Shares(options.min_num_features, options.num_levels);
+  const std::vector<int> most = Shares(options.max_num_features, options.num_levels);
+  std::vector<Level> levels;
+  for (size_t l = 0; l < least.size(); ++l) {
+    const double scale = std::pow(kLevelScale, static_cast<int>(l));
+    Level level;
+    level.width = std::max(1, static_cast<int>(std::lround(picture.width / scale)));
+    level.height = std::max(1, static_cast<int>(std::lround(picture.height / scale)));
+    level.scale_x = static_cast<double>(picture.width) / level.width;
+    level.scale_y = static_cast<double>(picture.height) / level.height;
+    level.options = options;
+    level.options.min_num_features = std::max(1, least[l]);
+    level.options.max_num_features = std::max(1, most[l]);
+    levels.push_back(std::move(level));
+  }
+  return levels;
 }
 
-// `found`: of a level, in its coordinates.
-void Append(const Features& found, double scale_x, double scale_y, Features* features) {
+// A picture or mask at a level's size: itself where that is its own size, no copy. An empty mask
+// stays empty.
+class AtLevel {
+ public:
+  AtLevel(const GrayImage& image, const Level& level) : image_(image) {
+    if (image.Empty() || (image.width == level.width && image.height == level.height)) return;
+    resized_ = GrayImage(level.width, level.height);
+    const cv::Mat source(image.height, image.width, CV_8U, const_cast<uint8_t*>(image.data.data()));
+    cv::Mat target(level.height, level.width, CV_8U, resized_.data.data());
+    cv::resize(source, target, target.size(), 0, 0, cv::INTER_AREA);
+  }
+  const GrayImage& Get() const { return resized_.Empty() ? image_ : resized_; }
+
+ private:
+  const GrayImage& image_;
+  GrayImage resized_;
+};
+
+Features Describe(const GrayImage& picture, std::vector<SeaPoint> points, bool with_sift) {
+  Features features;
+  features.points = std::move(points);
+  features.descriptors = DescribeSeaPoints(picture, &features.points);
+  if (with_sift) features.sift_descriptors = DescribeBySift(picture, features.points);
+  return features;
+}
+
+// Takes the features of a level over into the picture's coordinates.
+void Append(const Features& found, const Level& level, Features* features) {
   for (SeaPoint point : found.points) {
-    point.x = static_cast<float>(point.x * scale_x);
-    point.y = static_cast<float>(point.y * scale_y);
-    point.scale = static_cast<float>(std::sqrt(scale_x * scale_y));
+    point.x = static_cast<float>(point.x * level.scale_x);
+    point.y = static_cast<float>(point.y * level.scale_y);
+    point.scale = static_cast<float>(std::sqrt(level.scale_x * level.scale_y));
     features->points.push_back(point);
   }
   features->descriptors.insert(features->descriptors.end(), found.descriptors.begin(),
@@ -59,29 +97,18 @@ void Append(const Features& found, double scale_x, double scale_y, Features* fea
 
 ExtractedFeatures ExtractFeatures(const GrayImage& picture, const GrayImage& mask,
                                   const SeaPointExtractionOptions& options) {
-  ExtractedFeatures result;
-  for (int level = 0; level < options.num_levels; ++level) {
-    const double scale = std::pow(kLevelScale, level);
-    const int width = static_cast<int>(std::lround(picture.width / scale));
-    const int height = static_cast<int>(std::lround(picture.height / scale));
-    const GrayImage level_picture = level == 0 ? GrayImage() : Resize(picture, width, height);
-    const GrayImage level_mask =
-        level == 0 || mask.Empty() ? GrayImage() : Resize(mask, width, height);
-    const GrayImage& grey = level == 0 ? picture : level_picture;
+  ExtractedFeatures all;
+  for (const Level& level : PlanLevels(picture, options)) {
+    const AtLevel level_picture(picture, level), level_mask(mask, level);
+    const GrayImage& grey = level_picture.Get();
     const int border = kRBriefBorder * DescriptionReduction(grey);
-    if (std::min(width, height) <= 2 * border) break;
+    if (std::min(level.width, level.height) <= 2 * border) break;  // no room for any descriptor
 
-    DetectionSummary summary;
-    Features found;
-    found.points = DetectSeaPoints(grey, level == 0 ? mask : level_mask,
-                                   LevelOptions(options, level), border, &summary);
-    found.descriptors = DescribeSeaPoints(grey, &found.points);
-    if (options.descriptor == "sift") found.sift_descriptors = DescribeBySift(grey, found.points);
-    Append(found, static_cast<double>(picture.width) / width,
-           static_cast<double>(picture.height) / height, &result.features);
-    if (level == 0) result.detection = summary;
+    const Detection detection = DetectSeaPoints(grey, level_mask.Get(), level.options, border);
+    Append(Describe(grey, detection.points, options.WantsSift()), level, &all.features);
+    all.detection.push_back(detection.summary);
   }
-  return result;
+  return all;
 }
 
 }  // namespace colmap_seapoint

@@ -1,6 +1,8 @@
-// The spine of feature extraction (paper 2.3, 2.4): grey picture -> SeaPoints -> rBRIEF (and
-// SIFT, if options.descriptor says so: paper 4).
+// The spine of feature extraction (paper 2.3, 2.4): grey picture -> SeaPoints -> rBRIEF, and SIFT
+// too if options.descriptor asks for it (paper 4).
 #pragma once
+
+#include <vector>
 
 #include "colmap_seapoint/base/features.h"
 #include "colmap_seapoint/base/image.h"
@@ -9,19 +11,22 @@
 
 namespace colmap_seapoint {
 
-// Raise it whenever the same picture and options give other SeaPoints than before: what an earlier
-// run stored is then found again.
+// Raise it whenever the same picture and options give other SeaPoints than before, together with
+// the hashes in tests/feature/extraction_version_test.cc. What an earlier run stored is then found
+// again.
 inline constexpr char kExtractionVersion[] = "3";
 
 struct ExtractedFeatures {
-  Features features;
-  DetectionSummary detection;  // how the threshold came about; status tells of a flat picture
+  Features features;  // level after level, finest first; on each the strongest first
+  // How the threshold came about, by level; kFlat tells of a picture without texture. Levels that
+  // are too small to describe a SeaPoint on are not there.
+  std::vector<DetectionSummary> detection;
 };
 
-// Same result for every call on the same pixels. Runs on the caller's thread (pictures are spread
-// over threads, not bands). Cost: about 10 CPU ms a megapixel, 4 at 12 megapixels; with
-// SIFT three to seven times that.
-// `mask` (empty, or the size of the picture): no SeaPoint where it is 0.
+// Finds and describes the SeaPoints of a grey picture, none where `mask` (empty, or of the
+// picture's size) is 0. The same pixels give the same result on every call. Runs on the caller's
+// thread: pictures are spread over threads, not bands. Cost: about 10 CPU ms a megapixel, 4 at 12
+// megapixels; with SIFT three to seven times that.
 ExtractedFeatures ExtractFeatures(const GrayImage& picture, const GrayImage& mask,
                                   const SeaPointExtractionOptions& options);
 

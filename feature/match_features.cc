@@ -6,17 +6,14 @@
 #include "feature/descriptor/rbrief_descriptor.h"
 #include "feature/descriptor/rbrief_pattern.h"
 #include "feature/descriptor/sift_descriptor.h"
+#include "feature/matching/flow_filter.h"
+#include "feature/matching/guided_matcher.h"
+#include "feature/matching/hamming_matcher.h"
 #include "feature/matching/picture_turn.h"
+#include "feature/matching/sift_matcher.h"
+#include "feature/matching/two_view_verification.h"
 
 namespace colmap_seapoint {
-
-void SeaPointMatchingOptions::Bind(OptionTable* table) {
-  hamming.Bind(table);
-  sift.Bind(table);
-  flow.Bind(table);
-  guided.Bind(table);
-  verification.Bind(table);
-}
 
 namespace {
 
@@ -26,9 +23,10 @@ struct TurnedFeatures {
   double turn = 0;  // radians, from x towards y
 };
 
-// SIFT of picture 1 as picture 2 would see it. Empty: one of them has none, or they are not turned
-// by quarter turns against each other, which is all that can be done to it. (Pictures turned by 12
-// degrees lose a fifth of their matches by it, by 24 nearly all, and rBRIEF is turned freely.)
+// The SIFT of picture 1 as picture 2 would see it. It is empty when one of them has none, or when
+// they are not turned by quarter turns against each other, because SIFT cannot be turned otherwise:
+// pictures turned by 12 degrees lose a fifth of their matches by it, by 24 nearly all, while rBRIEF
+// is turned freely.
 std::vector<SiftDescriptor> TurnSift(const Features& features1, const Features& features2,
                                      int steps) {
   constexpr int kQuarter = kNumTurns / 4;

@@ -61,21 +61,28 @@ reconstruct() {  # BUILD IMAGES WORKSPACE OPTION...
   [ "$status" -eq 0 ] || [ "$status" -eq 3 ]
 }
 
-run_set() {  # NAME BUILD WORKSPACE
-  local folder
+make_set() {  # NAME
   case $1 in
-    demo) reconstruct "$2" "$(survey demo)/images" "$3" --PartialDensification.write_maps 1 ;;
+    demo) survey demo ;;
+    12mp) survey 12mp --num_strips 1 --width 4096 --height 3072 ;;
+    rig) [ -d "$output/sets/rig" ] || rig_pictures "$(survey demo)/images" "$output/sets/rig" ;;
+    hybrid)
+      survey demo_large --width 2720 --height 2048 --num_strips 1
+      survey demo_small --num_strips 1 ;;
+  esac >/dev/null
+}
+
+run_set() {  # NAME BUILD WORKSPACE
+  local surveys=$output/sets
+  case $1 in
+    demo) reconstruct "$2" "$surveys/demo/images" "$3" --PartialDensification.write_maps 1 ;;
     t3) reconstruct "$2" "$data/auv_strips/t3/images" "$3" ;;
     fountain) reconstruct "$2" "$data/fountain_p11/images" "$3" ;;
-    12mp) reconstruct "$2" "$(survey 12mp --num_strips 1 --width 4096 --height 3072)/images" "$3" ;;
-    rig)
-      folder=$output/sets/rig
-      [ -d "$folder" ] || rig_pictures "$(survey demo)/images" "$folder"
-      reconstruct "$2" "$folder" "$3" --rig left,right ;;
+    12mp) reconstruct "$2" "$surveys/12mp/images" "$3" ;;
+    rig) reconstruct "$2" "$surveys/rig" "$3" --rig left,right ;;
     hybrid)
-      folder=$(survey demo_large --width 2720 --height 2048 --num_strips 1)/images
-      reconstruct "$2" "$(survey demo_small --num_strips 1)/images" "$3"
-      "$2/bin/colmap_seapoint" partial_densifier --log_level 1 --image_path "$folder" \
+      reconstruct "$2" "$surveys/demo_small/images" "$3"
+      "$2/bin/colmap_seapoint" partial_densifier --log_level 1 --image_path "$surveys/demo_large/images" \
         --input_path "$3/sparse/0" --database_path "$3/database.db" --output_path "$3/hybrid" \
         --PartialDensification.mode complete --PartialDensification.redundancy sequential ;;
     *) echo "no set is called $1" >&2; exit 2 ;;
@@ -104,6 +111,7 @@ for name in ${sets//,/ }; do
   case $name in
     t3 | fountain) [ -d "$data" ] || { echo "$name: skipped, no folder $data"; continue; } ;;
   esac
+  make_set "$name"
   for side in old new; do
     workspace=$output/$side/$name
     [ "$side" = old ] && [ -f "$workspace.sums" ] && continue

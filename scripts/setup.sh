@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
-# Installs what the build, the tests and the demo need, from Debian's packages only. Does nothing
-# when all of it is there. As root, or with sudo.
+# scripts/setup.sh          installs what the build, the tests and the demo need
+# scripts/setup.sh --gate   and the tools of scripts/test.sh: formatter, clang-tidy, ctags
+#
+# From Debian's packages only. Does nothing when all of it is there. As root, or with sudo.
 set -euo pipefail
 
 packages=(
@@ -8,8 +10,13 @@ packages=(
   colmap
   libopencv-dev libeigen3-dev libceres-dev libsqlite3-dev libboost-program-options-dev
   libjpeg-dev libpng-dev libtiff-dev libexiv2-dev nlohmann-json3-dev libnanoflann-dev libproj-dev
-  libhwy-dev libxxhash-dev libtbb-dev ccache pkg-config libgtest-dev sqlite3 file
+  libhwy-dev libxxhash-dev ccache pkg-config libgtest-dev sqlite3 file
 )
+case ${1:-} in
+  '') ;;
+  --gate) packages+=(clang-format-14 clang-tidy-14 universal-ctags) ;;
+  *) sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//p}' "$0" >&2; exit 2 ;;
+esac
 
 is_installed() {
   [ "$(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]

@@ -117,8 +117,8 @@ Radial<T> RadialFactor(CameraModel model, const T* p, const T& s) {
   return {T(1), T(0)};
 }
 
-// What is added to a point: by decentred lenses (Brown's p1, p2), and by tilted ones, of the
-// squared radius (s1) and of its square (s2).
+// The shift that a lens adds to a point: by decentred lenses (Brown's p1, p2), and by tilted ones,
+// of the squared radius (s1) and of its square (s2).
 template <typename T>
 struct Aside {
   using Vector2 = Eigen::Matrix<T, 2, 1>;
@@ -128,7 +128,9 @@ struct Aside {
   Vector2 s1 = Vector2::Zero(), s2 = Vector2::Zero();
 
   Vector2 Of(const Vector2& w) const {
-    const T u = w.x(), v = w.y(), s = w.squaredNorm();
+    const T& u = w.x();
+    const T& v = w.y();
+    const T s = w.squaredNorm();
     const Vector2 tangential(2.0 * p1 * u * v + p2 * (s + 2.0 * u * u),
                              2.0 * p2 * u * v + p1 * (s + 2.0 * v * v));
     return tangential + s * s1 + s * s * s2;

@@ -1,7 +1,9 @@
-// Errors of three kinds (see README, "Errors"):
-//   Error       a fault of the input or of the machine: where, what was found, what to do. Exit 1.
-//   UsageError  a fault of the command line. Exit 2.
-//   Check(...)  a bug of ours: aborts the run with the place in the code. Exit 1.
+// Three kinds of errors; main.cc is the only place that catches all of them.
+//   Error           a fault of the input or of the machine: where, what was found, what to do. The
+//                   program ends with exit code 1.
+//   UsageError      a fault of the command line; exit code 2.
+//   SEAPOINT_CHECK  a bug of ours: throws std::logic_error that names the condition and its place
+//                   in the code; exit code 1.
 // Ordinary outcomes (no overlap, too few seeds) are no errors: they are a status in the result.
 #pragma once
 

@@ -1,4 +1,5 @@
-// What the feature stages hand on: SeaPoints, their descriptors, matches, two-view geometry.
+// The plain values that the feature stages hand on: SeaPoints, their descriptors, matches, two-view
+// geometry.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,13 +12,14 @@
 
 namespace colmap_seapoint {
 
-// paper 2.3. Coordinates in pixels of the full-size picture, centre of the first pixel (0.5, 0.5).
+// A SeaPoint (paper 2.3). Coordinates are in pixels of the full-size picture, the centre of the
+// first pixel is (0.5, 0.5).
 struct SeaPoint {
   float x = 0;
   float y = 0;
   float scale = 1;  // pixels of the full-size picture per pixel of the level it was found on
-  float orientation =
-      0;  // radians, of the intensity centroid, 0 = to the right, positive downwards
+  // Radians, of the intensity centroid; 0 is to the right, positive is downwards.
+  float orientation = 0;
 };
 
 // rBRIEF, 256 tests; bit i of the descriptor is bit i % 8 of byte i / 8.

@@ -1,4 +1,4 @@
-// From latitude and longitude to metres, near a place.
+// Conversion of latitude and longitude into metres, near a place.
 #pragma once
 
 #include <Eigen/Core>

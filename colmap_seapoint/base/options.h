@@ -1,5 +1,5 @@
 // One binding of a stage's options struct: each field once, with name, unit, legal range, origin.
-// Parsing, `-h`, the range check, run.json and the README's table are all made from it.
+// Parsing, `-h`, the man page, OPTIONS.md, the range check and run.json are all made from it.
 #pragma once
 
 #include <map>

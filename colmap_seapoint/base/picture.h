@@ -24,18 +24,20 @@ struct Picture {
   size_t NumBytes() const { return luma.data.size() + cb.data.size() + cr.data.size(); }
 };
 
-// 0.299 red + 0.587 green + 0.114 blue, in 2^15ths, rounded; as OpenCV's RGB2GRAY.
+// Returns 0.299 red + 0.587 green + 0.114 blue, in 2^15ths, rounded: the same as OpenCV's RGB2GRAY.
 GrayImage LumaOf(const ColorImage& color);
 
-// Luma and chroma of red, green and blue at full resolution: 3 bytes a pixel. Back again, a colour
-// is off by 2 levels at most (8 bits do not hold the chroma's fractions).
+// Returns luma and chroma of red, green and blue at full resolution, 3 bytes a pixel. On the way
+// back a colour is off by 2 levels at most, because 8 bits do not hold the chroma's fractions.
+// About 1 ns a pixel.
 Picture PictureOf(const ColorImage& color);
 
-// Red, green and blue of pixel (x, y), which must lie inside: chroma interpolated linearly between
-// its samples' centres, as JPEG decoders do. Grey for a picture without colour. About 10 ns.
+// Returns red, green and blue of pixel (x, y), which must lie inside. Chroma is interpolated
+// linearly between its samples' centres, as JPEG decoders do. Grey for a picture without colour.
+// About 10 ns.
 std::array<uint8_t, 3> ColorAt(const Picture& picture, int x, int y);
 
-// All pixels' ColorAt.
+// Returns ColorAt of all pixels.
 ColorImage ColorOf(const Picture& picture);
 
 }  // namespace colmap_seapoint

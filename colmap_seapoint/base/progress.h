@@ -1,5 +1,5 @@
 // What a person sees while a command runs: log lines and progress with the time left, on stderr.
-// Only commands and the program's own parts use it; feature/ and densify/ never print.
+// feature/ and densify/ do not use it: they never print.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// What every command has: seed, threads, log level; and how it ends.
+// The options that every command has (seed, threads, log level), and the way it ends.
 #pragma once
 
 #include <string>

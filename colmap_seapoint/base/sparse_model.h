@@ -1,5 +1,5 @@
-// What COLMAP's mapper returns, as plain values. Frames: "world" is the model's own frame (metric
-// only when the model was georeferenced); "cam" is x right, y down, z forward.
+// The model that COLMAP's mapper returns, as plain values. Frames: "world" is the model's own frame
+// (metric only when the model was georeferenced); "cam" is x right, y down, z forward.
 #pragma once
 
 #include <Eigen/Core>

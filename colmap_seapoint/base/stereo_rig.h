@@ -1,4 +1,5 @@
-// Which pictures a stereo rig took at the same moment (paper 4: "simultaneous" views as the pair).
+// Finds the pictures that a stereo rig took at the same moment (paper 4: "simultaneous" views make
+// the pair).
 #pragma once
 
 #include <cstdint>
@@ -10,7 +11,8 @@
 
 namespace colmap_seapoint {
 
-// Both by image_idx (position in SparseModel::images), or both empty: no rig.
+// Both vectors are indexed by image_idx (position in SparseModel::images); both are empty when
+// there is no rig.
 struct StereoRig {
   std::vector<int> right_of;      // the simultaneous right picture; -1: none
   std::vector<uint8_t> is_right;  // taken by a right camera: no part of the track
@@ -31,7 +33,8 @@ StereoRig RigFromFrames(const SparseModel& model, const std::vector<std::vector<
 std::map<std::string, std::string> SimultaneousNames(std::vector<std::string> left_names,
                                                      std::vector<std::string> right_names);
 
-// From names as SimultaneousNames returns them; pictures in `left_folder` and `right_folder` (no
+// The rig that the names tell of: `simultaneous` as SimultaneousNames returns it; pictures in
+// `left_folder` and `right_folder` (no
 // '/' at the end). All pictures in right_folder are right ones, with a left one or without.
 StereoRig RigFromNames(const SparseModel& model, const std::string& left_folder,
                        const std::string& right_folder,

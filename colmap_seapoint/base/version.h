@@ -1,10 +1,11 @@
+// The version of the program.
 #pragma once
 
 #include <string>
 
 namespace colmap_seapoint {
 
-// Of this build, "0.2.0".
+// Major, minor and patch of this build: "0.2.0".
 std::string Version();
 
 }  // namespace colmap_seapoint

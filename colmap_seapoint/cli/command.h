@@ -34,12 +34,13 @@ struct Command {
   // Both work on the same options struct: bind() first, parse, then run().
   std::function<void(OptionTable*)> bind;
   std::function<CommandResult()> run;
-  // Once kQualityOption is set and before the others are: gives those that follow it their default.
+  // Called once kQualityOption is set and before the other options are: sets the defaults that
+  // follow from the quality.
   std::function<void()> preset;
   ForeignOptions foreign;
 };
 
-// In the order of the data. Every call gives commands with fresh options.
+// The commands in the order of the data. Every call gives them with fresh options.
 std::vector<Command> AllCommands();
 
 // `Options` has Bind(OptionTable*); `run` validates, reads, calls a stage, writes and reports.

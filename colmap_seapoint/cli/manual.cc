@@ -75,7 +75,7 @@ void PrintOptionRows(const std::vector<OptionEntry>& entries, std::ostream& out)
   }
 }
 
-// Within double quotes of the completion script.
+// The words as they stand within double quotes in the completion script.
 std::string WordsText(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;

@@ -27,8 +27,8 @@ struct OptionReference {
   std::vector<SharedOptions> shared;          // groups, and what every command takes
 };
 
-// In the order of the commands; an option that reads differently in another command stands there
-// once more. `commands` outlives what is returned.
+// Every command's options, in the order of the commands. An option that reads differently in
+// another command is listed there once more. `commands` outlives the result.
 OptionReference MakeOptionReference(const std::vector<Command>& commands);
 
 }  // namespace colmap_seapoint

@@ -43,7 +43,7 @@ class CellMap {
     return static_cast<size_t>(hash);
   }
 
-  // Where the key stands or should stand.
+  // The slot that holds the key, or the empty one where it belongs.
   size_t FindSlot(const CellKey& key) const {
     const size_t mask = slots_.size() - 1;
     size_t at = Hash(key) & mask;

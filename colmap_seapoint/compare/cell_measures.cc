@@ -15,7 +15,7 @@ void Count(double squared, const std::vector<double>& limits, CellCounts* cell) 
   for (size_t k = 0; k < limits.size(); ++k) cell->num_within[k] += squared <= limits[k];
 }
 
-// The plan's rectangle of a cell with its centre at `place`.
+// Whether the rectangle about `place` that a cell takes in the plan lies in the box.
 bool IsInside(const PlanBox& box, const Eigen::Array2d& place, const Eigen::Array2d& half) {
   return (place - half >= box.low).all() && (place + half <= box.high).all();
 }

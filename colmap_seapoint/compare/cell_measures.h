@@ -1,5 +1,6 @@
-// Measures over cells of space and of the plan, tile by tile: what a tile holds whole is summed up,
-// what reaches over its border is kept until the others have told their part.
+// Measures over cells of space and of the plan, tile by tile. A cell that lies in one tile is
+// summed up at once; one that reaches over a border is kept until the tiles beyond have added their
+// points.
 #pragma once
 
 #include <array>
@@ -17,7 +18,7 @@ struct CellCounts {
   std::array<uint32_t, kMaxDistances> num_within = {};
 };
 
-// Over cells that are complete.
+// Sums over the cells whose points are all counted.
 struct CellSums {
   uint64_t num_cells = 0;
   std::array<double, kMaxDistances> shares = {};  // sum over the cells of num_within / num_points
@@ -32,10 +33,10 @@ struct CellLayer {
   CellMap<CellCounts> at_border;
 
   void Merge(const CellLayer& tile);
-  CellSums Finish(size_t num_distances) const;  // with what was at the borders
+  CellSums Finish(size_t num_distances) const;  // the cells at the borders included
 };
 
-// Grids of one way: ETH3D's two, the plan's for areas, the plan's for redundancy.
+// The grids of one way: two for ETH3D's measure, and two of the plan, for areas and for redundancy.
 struct CellLayers {
   enum Layer { kVoxels, kShiftedVoxels, kArea, kRedundancy, kNumLayers };
   std::array<CellLayer, kNumLayers> layers;
@@ -43,11 +44,11 @@ struct CellLayers {
   void Merge(const CellLayers& tile);
 };
 
-// `squared`: of `points`, which are all those of the tile.
+// `points` are all those of the tile; `squared` are their squared distances to the other cloud.
 CellLayers MeasureCells(const PointTiles& cloud, int tile, const PointVector& points,
                         const std::vector<double>& squared, const CloudComparison& setup);
 
-// Sets the cell measures of `way`.
+// Sets the measures of `way` that are made over cells.
 void FinishCells(const CellLayers& cells, const CloudComparison& setup, OneWay* way);
 
 }  // namespace colmap_seapoint

@@ -36,7 +36,7 @@ inline constexpr const char* kAreaDefinition =
     "from the other cloud; points_per_cell is redundancy: points over occupied cells of side "
     "cell_size in the same view";
 
-// One way, at one distance.
+// What is measured one way at one distance.
 struct DistanceShares {
   uint64_t num_within = 0;          // points with a distance <= d
   double voxel_share = 0;           // ETH3D: mean over the voxels

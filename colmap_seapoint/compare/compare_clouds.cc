@@ -23,7 +23,7 @@ constexpr int kSpacingTiles = 16;
 // Input and reference, in this order everywhere.
 using Paths = std::array<std::filesystem::path, 2>;
 
-// The clouds keep references to view and partition: it stays where it is.
+// Neither copied nor moved, since the clouds keep references to view and partition.
 struct TiledClouds {
   TiledClouds(const Paths& paths, const std::filesystem::path& temporary_folder, double tile_points,
               const CompareCallbacks& callbacks);
@@ -66,7 +66,7 @@ TiledClouds::TiledClouds(const Paths& paths, const std::filesystem::path& tempor
   }
 }
 
-// kSpacingDefinition.
+// Sets the spacing of `way`, as kSpacingDefinition says.
 void MeasureSpacing(const PointTiles& cloud, int num_threads, const CompareCallbacks& callbacks,
                     OneWay* way) {
   std::vector<int> tiles;
@@ -164,7 +164,7 @@ TileResult CompareTile(const TiledClouds& tiled, int tile, const CloudComparison
   return result;
 }
 
-// Takes up the tiles one after the other.
+// Adds up what the tiles give, one after the other.
 class Summary {
  public:
   Summary(const std::filesystem::path& temporary_folder, int num_tiles)

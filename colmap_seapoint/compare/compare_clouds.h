@@ -1,4 +1,4 @@
-// Two clouds of any size in one frame, against each other: the spine of cloud_comparer.
+// The spine of cloud_comparer: two clouds of any size in one frame, against each other.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,19 @@
 
 namespace colmap_seapoint {
 
-// Lengths are in units of the clouds; 0 = chosen here (README, "Comparing clouds").
+// Lengths are in units of the clouds; where they are 0, the value in the comment is taken.
 struct CompareOptions {
-  std::vector<double> distances;  // ascending, positive, at most kMaxDistances; empty = chosen here
-  double max_distance = 0;        // 10 times the largest distance
-  double voxel_size = 0;          // the smallest distance
-  double cell_size = 0;           // the reference's spacing
-  double area_cell_size = 0;      // 4 times the larger spacing of both
-  int num_threads = -1;           // more than 8 are not used: memory
-  double tile_points = 500000;    // of both clouds in a tile; never changes a count
+  // Ascending, positive, at most kMaxDistances; empty: 1, 2 and 4 times the reference's spacing.
+  std::vector<double> distances;
+  double max_distance = 0;      // 10 times the largest distance
+  double voxel_size = 0;        // the smallest distance
+  double cell_size = 0;         // the reference's spacing
+  double area_cell_size = 0;    // 4 times the larger spacing of both
+  int num_threads = -1;         // no more than 8 are used, for each takes memory
+  double tile_points = 500000;  // of both clouds in a tile; never changes a count
 };
 
-// Known before the first point is compared.
+// What is known before the first point is compared.
 struct CompareSetup {
   CloudComparison comparison;  // its lengths and numbers of points
   PlanView view;
@@ -33,8 +34,8 @@ struct CompareSetup {
 struct CompareCallbacks {
   std::function<void(const std::string& stage, int64_t done, int64_t total)> progress;
   std::function<void(const CompareSetup& setup)> begin;
-  // Every point once, in an order that depends on the clouds only; squared distances, kBeyond
-  // beyond max_distance. Not called where it is empty.
+  // Optional: gets every point once, in an order that depends on the clouds only, with its squared
+  // distance to the other cloud (kBeyond beyond max_distance).
   std::function<void(bool of_input, const PointVector& points, const std::vector<double>& squared)>
       difference;
 };
@@ -44,8 +45,8 @@ struct CompareCallbacks {
 // whatever the size of the clouds. Counts and distances are those of comparing every point with
 // every other one in double precision; the same bytes come out for any number of threads, and
 // exchanging the clouds exchanges input and reference exactly (but for lengths left to be chosen).
-// About 3 CPU seconds a million points of either cloud. Throws Error: see PointTiles; and when no
-// distances are given and the reference has no spacing.
+// About 3 CPU seconds a million points of either cloud. Throws Error as SurveyCloud does, and when
+// no distances are given and the reference has no spacing.
 CloudComparison CompareClouds(const std::filesystem::path& input,
                               const std::filesystem::path& reference,
                               const std::filesystem::path& temporary_folder,

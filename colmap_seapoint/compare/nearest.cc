@@ -40,7 +40,8 @@ PointVector Candidates(const PointTiles& cloud, int tile, const PointVector& que
 
 std::vector<double> NearestSquared(const PointTiles& cloud, int tile, const PointVector& queries,
                                    double max_distance, NearestOf what) {
-  // One step above the largest square that counts: the search looks for what is less.
+  // The search looks for what is less than the limit: it lies one step above the largest square
+  // that counts.
   const double limit = std::nextafter(max_distance * max_distance, kBeyond);
   std::vector<double> squared(queries.size(), limit);
   auto search = [&](PointVector points, const std::vector<uint32_t>& asking) {

@@ -9,9 +9,9 @@
 namespace colmap_seapoint {
 
 // For each of `queries`, which lie in `tile`: the squared distance to the nearest point of `cloud`,
-// kBeyond when that is farther than `max_distance` (itself included). Memory: the points of one
-// tile, and their index. Tiles are taken up the nearest first, and only those points of them that
-// can be the nearest of a query.
+// kBeyond when that is more than `max_distance`. The tiles are read one after the other, the
+// nearest first, and of each only the points are kept that can be the nearest of a query. Memory:
+// the points of one tile, and their index.
 std::vector<double> NearestSquared(const PointTiles& cloud, int tile, const PointVector& queries,
                                    double max_distance, NearestOf what);
 

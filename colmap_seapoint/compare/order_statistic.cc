@@ -7,8 +7,8 @@
 
 namespace colmap_seapoint {
 
-// Doubles that are not negative have the order of their bits: digits of 22, 21 and 21 bits are
-// settled one after the other.
+// Doubles that are not negative are ordered as the integers that their bits spell: of these, digits
+// of 22, 21 and 21 bits are found one after the other.
 double KthSmallest(const TileStore& values, uint64_t k) {
   uint64_t settled = 0;
   int num_left = 64;

@@ -14,7 +14,7 @@ constexpr int kLineHeight = 2;  // pixels between stacked pictures
 
 using Points = std::vector<Eigen::Vector3d>;
 
-// Bounds of the values without `share` of them at either end.
+// The smallest and the largest value when a `share` of them is left out at either end.
 std::array<double, 2> TrimmedBounds(std::vector<double> values, double share) {
   const auto skip = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
   std::nth_element(values.begin(), values.begin() + skip, values.end());
@@ -39,7 +39,7 @@ struct Scatter {
   Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
 };
 
-// Of the points in the box, as seen from its centre.
+// The scatter of the points in the box, about its centre.
 Scatter ScatterInBox(const Points& points, const Eigen::Array3d& low, const Eigen::Array3d& high) {
   Scatter scatter;
   const Eigen::Vector3d center = 0.5 * (low + high);
@@ -53,7 +53,7 @@ Scatter ScatterInBox(const Points& points, const Eigen::Array3d& low, const Eige
   return scatter;
 }
 
-// Turned so that its largest component is positive.
+// The direction or its opposite, whichever has its largest component positive.
 Eigen::Vector3d Positive(const Eigen::Vector3d& direction) {
   Eigen::Index largest = 0;
   direction.cwiseAbs().maxCoeff(&largest);

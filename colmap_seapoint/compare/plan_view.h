@@ -15,7 +15,7 @@ namespace colmap_seapoint {
 struct PlanView {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  // rows: right, down, up; orthonormal
-  // Of all but a thousandth of the points at either end: right, down, up, from the centre.
+  // Bounds of all but a thousandth of the points at either end: right, down, up, from the centre.
   Eigen::Array3d low = Eigen::Array3d::Zero(), high = Eigen::Array3d::Zero();
 
   Eigen::Vector3d FromWorld(const Eigen::Vector3d& xyz) const { return axes * (xyz - center); }
@@ -29,10 +29,11 @@ PlanView FitPlanView(const std::vector<Eigen::Vector3d>& points_a,
                      const std::vector<Eigen::Vector3d>& points_b,
                      const Eigen::Vector3d& normal_sum);
 
-// Blue at 0 over green to red at 1; what lies outside counts as the nearer end.
+// From blue at 0 over green to red at 1; a share outside counts as the nearer end.
 std::array<uint8_t, 3> RampColor(double share);
 
-// The highest point of each pixel; black where there is none. Of points of one height, the first.
+// A picture of a cloud from above: the highest point of each pixel, the first one of several at one
+// height; black where there is none.
 class PlanPicture {
  public:
   // `width` pixels for the view's longer direction; the height follows, up to `max_height`.
@@ -47,7 +48,7 @@ class PlanPicture {
   FloatImage top_;
 };
 
-// One below the other, with a thin white line between them. Both are of one width.
+// Two pictures of one width, one below the other, with a thin white line between them.
 ColorImage StackPictures(const ColorImage& above, const ColorImage& below);
 
 }  // namespace colmap_seapoint

@@ -6,7 +6,7 @@
 namespace colmap_seapoint {
 namespace {
 
-// What nanoflann asks for: the nearest so far.
+// The nearest point so far, in the form that nanoflann asks for.
 struct NearestResult {
   double best;
   bool skip_zero;
@@ -14,8 +14,8 @@ struct NearestResult {
   double worstDist() const { return best; }
   bool full() const { return true; }
   size_t size() const { return 1; }
-  // Offered all of a leaf that was nearer than the best when the leaf was entered. False ends the
-  // search: nothing is nearer than 0.
+  // Called for the points of a leaf, some of which may be farther than the best one by now. False
+  // ends the search: nothing is nearer than 0.
   bool addPoint(double squared, uint32_t) {
     if (squared >= best || (skip_zero && squared == 0)) return true;
     best = squared;

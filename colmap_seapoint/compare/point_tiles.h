@@ -31,7 +31,7 @@ CloudSurvey SurveyCloud(const std::filesystem::path& path, uint64_t stride,
 // of the file. They lie in a temporary file; memory does not grow with the cloud.
 class PointTiles {
  public:
-  // `cloud`, `view` and `partition` must outlive it, the first only the constructor.
+  // `view` and `partition` must outlive it.
   PointTiles(const std::filesystem::path& cloud, bool fits_float,
              const std::filesystem::path& temporary_folder, const PlanView& view,
              const TilePartition& partition, const CountCallback& progress);

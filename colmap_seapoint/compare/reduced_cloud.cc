@@ -9,12 +9,14 @@
 namespace colmap_seapoint {
 namespace {
 
-// The mean of a voxel lies within 0.87 voxels of its centre, the one it is near to within a
-// distance of that, and the points that make up either within 1.74 voxels: 2.31 distances in all.
+// How far around a tile points are needed. The mean of a voxel lies within 0.87 voxels of its
+// centre, the mean that it is near to within one distance of that, and the points that make up the
+// latter within 1.74 voxels: with voxels of half a distance, 2.31 distances in all.
 constexpr double kMargin = 2.5;  // distances
 constexpr double kFixedPoint = 4294967296.0;
 
-// Offsets from the voxel's corner in 2^-32 of its side: sums of integers are the same in any order.
+// Offsets from the voxel's corner in units of 2^-32 of its side: a sum of integers is the same in
+// any order.
 struct VoxelSum {
   uint64_t num_points = 0;
   std::array<int64_t, 3> offset = {};

@@ -40,7 +40,7 @@ int TilePartition::Split(std::vector<Eigen::Array2d>::iterator begin,
     return a[axis] < b[axis];
   });
   double split = (*middle)[axis];
-  // Many places of one value: whatever lies below the split must not be empty.
+  // Where many places have one value, the part below the split must still not be empty.
   if (split == low[axis]) split = std::nextafter(split, high[axis]);
   const auto cut = std::partition(
       begin, end, [axis, split](const Eigen::Array2d& place) { return place[axis] < split; });

@@ -11,7 +11,8 @@
 
 namespace colmap_seapoint {
 
-// Raise it whenever the same measurements give another similarity than before.
+// Raise it whenever the same measurements give another similarity than before
+// (tests/georeference/scaling_version_test.cc watches).
 inline constexpr char kScalingVersion[] = "1";
 
 struct SimilarityEstimate {

@@ -1,34 +1,18 @@
 // What is known of a model's size and place: scale bars, positions of its pictures, the spacing of
-// a rig. Options, and the measurements that they give for one model.
+// a rig. The measurements that the sources give for one model.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "colmap_seapoint/base/options.h"
 #include "colmap_seapoint/base/sparse_model.h"
 #include "colmap_seapoint/base/stereo_rig.h"
 #include "colmap_seapoint/georeference/estimate_similarity.h"
+#include "colmap_seapoint/georeference/scale_sources.h"
 #include "colmap_seapoint/io/files/model_units.h"
 #include "colmap_seapoint/io/files/run_report.h"
 
 namespace colmap_seapoint {
-
-// Each field's meaning, unit, legal range and origin: Bind(), in the .cc file.
-struct ScaleSources {
-  std::string scale_bars_path;
-  std::string targets_path;
-  std::string positions_path;
-  std::string crs;
-  double rig_spacing = 0;
-  double length_sigma = 0.001;
-  double max_target_error = 4;
-
-  void Bind(OptionTable* table);
-  bool Any() const;
-  // "", or the whole sentence about options that do not go together.
-  std::string Check() const;
-};
 
 struct TargetSummary {
   std::string name;

@@ -11,7 +11,8 @@
 
 namespace colmap_seapoint {
 
-// Raise it whenever the same database and options give other models than before.
+// Raise it whenever the same database and options give other models than before
+// (tests/mapping/mapper_version_test.cc watches).
 inline constexpr char kMapperVersion[] = "11";
 
 struct MapperJob {

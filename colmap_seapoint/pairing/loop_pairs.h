@@ -1,5 +1,5 @@
-// Links beyond the next picture (ours): pairs that look alike wherever they stand in the sequence,
-// found by retrieval over the SeaPoints themselves.
+// Links beyond the next pictures (ours): pairs that look alike, wherever they stand in the
+// sequence. They are found by retrieval over the SeaPoints themselves.
 #pragma once
 
 #include <vector>
@@ -18,10 +18,10 @@ struct LoopSearch {
 };
 
 // Pairs of `sequence` further apart than the overlap that are worth full matching: among each
-// other's best candidates, and supported by the pairs around. Without those that other matching has
-// given a row. The list is kept in the database: the same call again, on the same SeaPoints, reads
-// it. Whatever the number of threads, the same pairs. Streams the SeaPoints three times; memory: 24
-// bytes a SeaPoint. About 10 ms a picture of 3000.
+// other's best candidates, and supported by the pairs around. Pairs that other matching has given a
+// row are left out. The list is kept in the database: the same call again, on the same SeaPoints,
+// reads it. Whatever the number of threads, the same pairs. Streams the SeaPoints three times;
+// memory: 24 bytes a SeaPoint. About 10 ms a picture of 3000.
 std::vector<ImagePair> FindLoopPairs(const std::vector<DatabaseImage>& sequence,
                                      const LoopSearch& search, ColmapDatabase* database);
 

@@ -15,17 +15,6 @@ ImagePair OrderedPair(const DatabaseImage& a, const DatabaseImage& b) {
 
 }  // namespace
 
-void SequentialPairOptions::Bind(OptionTable* table) {
-  table->Add("SequentialMatching.overlap", &overlap,
-             "how many following pictures each one is matched with",
-             "COLMAP (there 10, and powers of two)", 1, 10000);
-  table->Add("SequentialMatching.loop_detection", &loop_detection,
-             "also match each picture with those that look like it, wherever they are in the order",
-             "COLMAP (there 0, and with a vocabulary to download)");
-  table->Add("SequentialMatching.loop_detection_num_images", &loop_detection_num_images,
-             "pictures that each one is looked for among, at most", "COLMAP (there 50)", 1, 1000);
-}
-
 void SortNaturally(std::vector<DatabaseImage>* images) {
   std::sort(images->begin(), images->end(),
             [](const auto& a, const auto& b) { return NaturalLess(a.name, b.name); });

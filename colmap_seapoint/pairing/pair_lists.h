@@ -3,19 +3,10 @@
 
 #include <vector>
 
-#include "colmap_seapoint/base/options.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/colmap/database_matches.h"
 
 namespace colmap_seapoint {
-
-struct SequentialPairOptions {
-  int overlap = 5;
-  bool loop_detection = true;
-  int loop_detection_num_images = 10;
-
-  void Bind(OptionTable* table);
-};
 
 void SortNaturally(std::vector<DatabaseImage>* images);
 

@@ -128,26 +128,6 @@ using Tree =
 
 }  // namespace
 
-void SpatialPairOptions::Bind(OptionTable* table) {
-  const std::string group = "SpatialMatching.";
-  table->Add(group + "max_num_neighbors", &max_num_neighbors,
-             "nearest pictures that each one is matched with, at most", "COLMAP (there 50)", 1,
-             10000);
-  table->Add(group + "max_distance", &max_distance,
-             "largest distance of two pictures, metres (or the unit of the positions)", "COLMAP",
-             1e-6, 1e9);
-  table->Add(group + "ignore_z", &ignore_z, "distances leave height and depth out of account",
-             "COLMAP");
-  table->Add(group + "is_gps", &is_gps,
-             "positions of the database that do not say what they are: 1 = latitude, longitude, "
-             "altitude; 0 = metres",
-             "COLMAP 3.8");
-  table->Add(group + "positions_path", &positions_path,
-             "table of positions, with the header image,x,y,z (metres) or image,lat,lon,alt "
-             "(degrees, metres); empty = EXIF, or the database",
-             "ours");
-}
-
 std::vector<PlacedImage> PlaceImages(const std::vector<DatabaseImage>& images,
                                      const SpatialPairOptions& options,
                                      const std::string& image_path,

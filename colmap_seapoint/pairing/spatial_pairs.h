@@ -5,25 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "colmap_seapoint/base/options.h"
 #include "colmap_seapoint/base/run_options.h"
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/io/files/run_report.h"
+#include "colmap_seapoint/pairing/pair_options.h"
 
 namespace colmap_seapoint {
-
-// Each field's meaning, unit, legal range and origin: Bind(), in the .cc file.
-struct SpatialPairOptions {
-  int max_num_neighbors = 20;
-  double max_distance = 100;
-  bool ignore_z = true;
-  bool is_gps = true;
-  std::string positions_path;
-
-  void Bind(OptionTable* table);
-};
 
 struct PlacedImage {
   uint32_t image_id = 0;
@@ -32,8 +21,8 @@ struct PlacedImage {
 
 // The images whose position is known, in their order: from --SpatialMatching.positions_path when
 // it is given, else from the EXIF of the pictures in `image_path` when that is given, else from the
-// database. One source only, since their frames differ. The others are left out. Throws Error when
-// no position is known.
+// database: never from two of them, since their frames differ. The other images are left out.
+// Throws Error when no position is known.
 std::vector<PlacedImage> PlaceImages(const std::vector<DatabaseImage>& images,
                                      const SpatialPairOptions& options,
                                      const std::string& image_path,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <sstream>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/parallel.h"
@@ -14,20 +13,6 @@
 
 namespace colmap_seapoint {
 namespace {
-
-// Numbers separated by commas; nullopt when a part is no finite number.
-std::optional<std::vector<double>> ParseParams(const std::string& text) {
-  std::vector<double> params;
-  std::istringstream parts(text);
-  for (std::string part; std::getline(parts, part, ',');) {
-    std::istringstream number(part);
-    number.imbue(std::locale::classic());
-    double value = 0;
-    if (!(number >> value) || !(number >> std::ws).eof()) return std::nullopt;
-    params.push_back(value);
-  }
-  return params;
-}
 
 std::string SizeText(int width, int height) {
   return std::to_string(width) + "x" + std::to_string(height);
@@ -54,7 +39,7 @@ Camera NewCamera(const ImageInfo& info, const ImageReaderOptions& options) {
       MakeCamera(model->model, info.focal_length_px.value_or(guess), info.width, info.height);
   camera.has_prior_focal_length = info.focal_length_px.has_value();
   if (!options.camera_params.empty()) {
-    camera.params = *ParseParams(options.camera_params);
+    camera.params = *options.CameraParams();
     camera.has_prior_focal_length = true;
   }
   return camera;
@@ -130,38 +115,6 @@ void WarnOfTurnedPictures(const std::vector<ReadablePicture>& pictures) {
 }
 
 }  // namespace
-
-void ImageReaderOptions::Bind(OptionTable* table) {
-  table->Add("ImageReader.camera_model", &camera_model,
-             "camera model of new cameras: " + CameraModelNames(), "COLMAP (there SIMPLE_RADIAL)");
-  table->Add("ImageReader.camera_params", &camera_params,
-             "parameters of new cameras, separated by commas, in pixels; empty = focal length from "
-             "EXIF or guessed, no distortion",
-             "COLMAP");
-  table->Add("ImageReader.single_camera", &single_camera, "all pictures share one camera",
-             "COLMAP");
-  table->Add("ImageReader.single_camera_per_folder", &single_camera_per_folder,
-             "pictures of one folder, size and EXIF camera share one camera",
-             "COLMAP (there 0, and the folder alone decides)");
-  table->Add("ImageReader.default_focal_length_factor", &default_focal_length_factor,
-             "guess of the focal length without EXIF, in units of the picture's longer side",
-             "COLMAP", 0.1, 100);
-  table->Add("ImageReader.mask_path", &mask_path,
-             "folder of masks <image name>.png, no SeaPoints where a mask is 0; empty = none",
-             "COLMAP");
-}
-
-std::string ImageReaderOptions::Check() const {
-  const CameraModelInfo* model = FindCameraModel(camera_model);
-  if (model == nullptr) {
-    return "--ImageReader.camera_model " + camera_model + ": must be one of " + CameraModelNames();
-  }
-  if (camera_params.empty()) return "";
-  const auto params = ParseParams(camera_params);
-  if (params && static_cast<int>(params->size()) == model->num_params) return "";
-  return "--ImageReader.camera_params " + camera_params + ": must be " +
-         std::to_string(model->num_params) + " numbers separated by commas for " + camera_model;
-}
 
 std::vector<std::string> ListPictures(const std::filesystem::path& image_path,
                                       const std::string& image_list_path, RunReport* report) {

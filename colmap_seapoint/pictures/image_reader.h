@@ -6,29 +6,16 @@
 #include <string>
 #include <vector>
 
-#include "colmap_seapoint/base/options.h"
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/files/run_report.h"
 #include "colmap_seapoint/io/image/image_file.h"
+#include "colmap_seapoint/pictures/image_reader_options.h"
 
 namespace colmap_seapoint {
 
-// Each field's meaning, unit, legal range and origin: Bind(), in the .cc file.
-struct ImageReaderOptions {
-  std::string camera_model = "OPENCV";
-  std::string camera_params;
-  bool single_camera = false;
-  bool single_camera_per_folder = true;
-  double default_focal_length_factor = 1.2;
-  std::string mask_path;
-
-  void Bind(OptionTable* table);
-  // "" or the whole sentence.
-  std::string Check() const;
-};
-
-// Names below `image_path`, sorted bytewise, each once: all of them, or those of the list. Throws
-// Error when there is none, UsageError never. Names that could lead out of the folder are left out.
+// Names below `image_path`, sorted bytewise, each once: all pictures, or those of the list where
+// one is given. Names that could lead out of the folder are left out. Throws Error when there is no
+// such folder or list, or no name in it.
 std::vector<std::string> ListPictures(const std::filesystem::path& image_path,
                                       const std::string& image_list_path, RunReport* report);
 

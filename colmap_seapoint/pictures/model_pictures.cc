@@ -12,6 +12,17 @@
 #include "colmap_seapoint/io/image/image_file.h"
 
 namespace colmap_seapoint {
+namespace {
+
+// Why a picture of this size does not belong to its camera, or "".
+std::string SizeProblem(const Camera& camera, int width, int height) {
+  if (width == camera.width && height == camera.height) return "";
+  return "is " + std::to_string(width) + "x" + std::to_string(height) +
+         " but its camera in the model is " + std::to_string(camera.width) + "x" +
+         std::to_string(camera.height) + ", of other proportions";
+}
+
+}  // namespace
 
 ModelPictures::ModelPictures(const SparseModel& model, const std::filesystem::path& image_path,
                              ColmapDatabase* database, const SeaPointExtractionOptions& extraction,
@@ -21,7 +32,8 @@ ModelPictures::ModelPictures(const SparseModel& model, const std::filesystem::pa
       database_(database),
       extraction_(extraction),
       matching_(matching),
-      has_stored_(model.images.size()) {
+      has_stored_(model.images.size()),
+      described_(model.images.size()) {
   if (database_ == nullptr) return;
   const std::map<uint32_t, Camera> cameras = ReadCameras(*database_);
   std::unordered_map<std::string, const Camera*> camera_of;  // the model's
@@ -35,8 +47,9 @@ ModelPictures::ModelPictures(const SparseModel& model, const std::filesystem::pa
     const Camera& to = *posed->second;
     const Camera& from = found_in == cameras.end() ? to : found_in->second;
     if (!AreScaledSizes(from.width, from.height, to.width, to.height)) continue;
-    in_database_[image.name] = {image.image_id, static_cast<float>(to.width) / from.width,
-                                static_cast<float>(to.height) / from.height};
+    in_database_[image.name] = {image.image_id,
+                                static_cast<float>(to.width) / static_cast<float>(from.width),
+                                static_cast<float>(to.height) / static_cast<float>(from.height)};
   }
 }
 
@@ -50,26 +63,34 @@ std::filesystem::path ModelPictures::PathOf(int image_idx) const {
   return image_path_ / name;
 }
 
-std::string ModelPictures::CheckSize(int image_idx, int width, int height) const {
-  const Camera& camera = model_.cameras.at(ImageAt(image_idx).camera_id);
-  if (width == camera.width && height == camera.height) return "";
-  return "is " + std::to_string(width) + "x" + std::to_string(height) +
-         " but its camera in the model is " + std::to_string(camera.width) + "x" +
-         std::to_string(camera.height) + ", of other proportions";
-}
-
 std::string ModelPictures::Check(int image_idx) const {
   try {
     const ImageInfo info = ReadImageInfo(PathOf(image_idx));
-    return CheckSize(image_idx, info.width, info.height);
+    return SizeProblem(model_.cameras.at(ImageAt(image_idx).camera_id), info.width, info.height);
   } catch (const Error& error) {
     return error.Finding();
   }
 }
 
+RunReport::Input ModelPictures::Describe(int image_idx) const {
+  {
+    const std::lock_guard<std::mutex> lock(described_mutex_);
+    const auto& described = described_.at(static_cast<size_t>(image_idx));
+    if (described) return *described;
+  }
+  return DescribeInput(ImageAt(image_idx).name, PathOf(image_idx));
+}
+
 Picture ModelPictures::ReadPicture(int image_idx) {
-  Picture picture = colmap_seapoint::ReadPicture(PathOf(image_idx));
-  const std::string problem = CheckSize(image_idx, picture.luma.width, picture.luma.height);
+  const PictureFile file(PathOf(image_idx));
+  {
+    const std::lock_guard<std::mutex> lock(described_mutex_);
+    auto& described = described_.at(static_cast<size_t>(image_idx));
+    if (!described) described = {ImageAt(image_idx).name, file.Size(), file.Hash()};
+  }
+  Picture picture = file.Decode();
+  const std::string problem = SizeProblem(model_.cameras.at(ImageAt(image_idx).camera_id),
+                                          picture.luma.width, picture.luma.height);
   if (problem.empty()) return picture;
   throw Error(PathOf(image_idx).string(), problem,
               "give the pictures that the model was made from, reduced or in full");

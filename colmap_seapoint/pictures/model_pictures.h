@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -10,6 +11,7 @@
 
 #include "colmap_seapoint/base/sparse_model.h"
 #include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/files/run_report.h"
 #include "densify/densify_sequence.h"
 #include "feature/extract_features.h"
 #include "feature/match_features.h"
@@ -32,6 +34,10 @@ class ModelPictures : public PictureSource {
   // How many of the model's pictures have SeaPoints in the database.
   int NumInDatabase() const { return static_cast<int>(in_database_.size()); }
 
+  // Size and hash of a picture, for the run's report: of the bytes that ReadPicture decoded; only a
+  // picture that it never read is read for this. Called from several threads at once.
+  RunReport::Input Describe(int image_idx) const;
+
   Picture ReadPicture(int image_idx) override;
   std::optional<Features> ReadSeaPoints(int image_idx) override;
   Features FindSeaPoints(const GrayImage& picture) override;
@@ -47,9 +53,6 @@ class ModelPictures : public PictureSource {
 
   const PosedImage& ImageAt(int image_idx) const;
   std::filesystem::path PathOf(int image_idx) const;
-  // Throws Error when the picture is of another size than its camera.
-  // "" or the reason.
-  std::string CheckSize(int image_idx, int width, int height) const;
   // Whether the database has SeaPoints of ours that ReadSeaPoints can return.
   bool HasStoredSeaPoints(int image_idx);
 
@@ -60,6 +63,8 @@ class ModelPictures : public PictureSource {
   SeaPointMatchingOptions matching_;
   std::unordered_map<std::string, StoredSeaPoints> in_database_;  // the model's images, by name
   std::vector<std::optional<bool>> has_stored_;                   // by image_idx, once known
+  mutable std::mutex described_mutex_;
+  std::vector<std::optional<RunReport::Input>> described_;  // by image_idx, once read
 };
 
 }  // namespace colmap_seapoint

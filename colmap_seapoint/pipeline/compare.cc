@@ -53,7 +53,7 @@ CompareOptions ToCompareOptions(const CloudComparerOptions& options) {
   return compare;
 }
 
-// One line of progress after the other, as the stages come.
+// Shows one progress line for each stage of the comparison.
 class StageProgress {
  public:
   void Update(const std::string& stage, int64_t done, int64_t total) {

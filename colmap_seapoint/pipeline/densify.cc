@@ -10,9 +10,11 @@
 #include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/io/cloud/ply.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/model_units.h"
+#include "colmap_seapoint/io/files/run_report.h"
 #include "colmap_seapoint/mapping/run_mapper.h"
 #include "colmap_seapoint/pictures/model_pictures.h"
 #include "colmap_seapoint/pictures/picture_scale.h"
@@ -79,24 +81,28 @@ void CheckPictures(const PartialDensifierOptions& options, const SparseModel& mo
               "give the --image_path that the model was made from, reduced or in full");
 }
 
-// The hash of a whole survey takes as long as reading it: on all threads.
-void DescribeInputs(const PartialDensifierOptions& options, const SparseModel& model,
+// On all threads: pictures that densification did not read are read now, and a survey takes long to
+// read.
+void DescribeInputs(const PartialDensifierOptions& options, const ModelPictures& pictures,
                     RunReport* report) {
-  std::vector<std::pair<std::string, std::filesystem::path>> files;
-  for (const PosedImage& image : model.images) {
-    files.emplace_back(image.name, std::filesystem::path(options.image_path) / image.name);
-  }
+  std::vector<std::string> model_files;
   for (const auto& entry : std::filesystem::directory_iterator(options.input_path)) {
     const std::string extension = entry.path().extension().string();
-    if (extension != ".bin" && extension != ".txt") continue;
-    files.emplace_back(entry.path().string(), entry.path());
+    if (extension == ".bin" || extension == ".txt") model_files.push_back(entry.path().string());
   }
-  std::sort(files.begin() + static_cast<std::ptrdiff_t>(model.images.size()), files.end());
-  report->inputs.resize(files.size());
-  ParallelFor(options.run.num_threads, static_cast<int64_t>(files.size()), [&](int64_t index) {
-    const auto i = static_cast<size_t>(index);
-    report->inputs[i] = DescribeInput(files[i].first, files[i].second);
-  });
+  std::sort(model_files.begin(), model_files.end());
+  const auto num_images = static_cast<size_t>(report->images_in);
+  report->inputs.resize(num_images + model_files.size());
+  ParallelFor(options.run.num_threads, static_cast<int64_t>(report->inputs.size()),
+              [&](int64_t index) {
+                const auto i = static_cast<size_t>(index);
+                if (i < num_images) {
+                  report->inputs[i] = pictures.Describe(static_cast<int>(i));
+                } else {
+                  const std::string& path = model_files[i - num_images];
+                  report->inputs[i] = DescribeInput(path, path);
+                }
+              });
 }
 
 // Seconds of each stage over all pairs: wall time on the threads that did the work.
@@ -226,10 +232,10 @@ RunReport DensifyModel(const PartialDensifierOptions& options, ColmapDatabase* d
                  "found again");
     }
     const StereoRig rig = ReadRig(options.rig, options.image_path, options.input_path, model);
-    DescribeInputs(options, model, &report);
     const std::unique_ptr<MapWriter> maps = StartMaps(options, model);
     CloudWriter cloud(output / "fused.ply");
     sequence = Densify(options, model, rig, &pictures, &cloud, maps.get());
+    DescribeInputs(options, pictures, &report);
     FillReport(model, sequence, &report);
     LogPairSeconds(sequence);
     report.points = static_cast<int64_t>(cloud.NumPoints());

@@ -5,13 +5,14 @@
 
 #include "colmap_seapoint/base/options.h"
 #include "colmap_seapoint/base/run_options.h"
-#include "colmap_seapoint/io/colmap/colmap_database.h"
-#include "colmap_seapoint/io/files/run_report.h"
 #include "densify/partial_densification_options.h"
 #include "feature/detector/seapoint_detector.h"
-#include "feature/match_features.h"
+#include "feature/matching/matching_options.h"
 
 namespace colmap_seapoint {
+
+class ColmapDatabase;
+struct RunReport;
 
 struct PartialDensifierOptions {
   std::string image_path;     // folder of the pictures

@@ -12,12 +12,14 @@
 #include "colmap_seapoint/io/colmap/database_features.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/image/image_file.h"
 
 namespace colmap_seapoint {
 namespace {
 
 constexpr char kCommand[] = "feature_extractor";
-// Before the fingerprint of a picture that could not be read: it is tried again by the next run.
+// Prefix of the fingerprint of a picture that could not be read, so that the next run tries it
+// again.
 constexpr char kUnreadable[] = "unreadable:";
 constexpr char kNoSeaPoint[] = "has no SeaPoint: it shows no texture, or its mask covers it";
 
@@ -29,7 +31,8 @@ struct Extracted {
   Features features;
 };
 
-// What a picture's SeaPoints depend on is fixed for the whole run, but for the picture itself.
+// Finds the SeaPoints of one picture. All that they depend on is fixed for the run, except the
+// picture itself.
 class Extractor {
  public:
   Extractor(const FeatureExtractorOptions& options, std::set<std::string> second_chance_names)
@@ -41,27 +44,29 @@ class Extractor {
     second_chance_.hash = OptionsFingerprint(OptionValues(second_chance_.options));
   }
 
-  // Called from several threads at once. `stored`: the fingerprint in the database.
+  // Called from several threads at once. `stored`: the fingerprint in the database. The picture is
+  // read once: what is hashed is what is decoded.
   Extracted Extract(const std::string& name, const std::optional<std::string>& stored) const {
     const auto picture_path = std::filesystem::path(options_.image_path) / name;
-    Extracted result;
-    result.input = DescribeInput(name, picture_path);
-    const std::filesystem::path mask_path = MaskPath(name);
     const Extraction& extraction = second_chance_names_.count(name) > 0 ? second_chance_ : usual_;
-    result.fingerprint = kExtractionVersion + (":" + std::to_string(result.input.size)) + ":" +
-                         result.input.hash + ":" + MaskHash(mask_path) + ":" + extraction.hash;
-    if (stored == result.fingerprint) {
-      result.is_unchanged = true;
-      return result;
-    }
+    Extracted result;
+    std::string mask_hash;
     try {
-      const GrayImage picture = ReadGrayImage(picture_path);
-      const GrayImage mask = ReadMask(mask_path, picture);
-      result.features = ExtractFeatures(picture, mask, extraction.options).features;
+      const PictureFile file(picture_path);
+      result.input = {name, file.Size(), file.Hash()};
+      const std::optional<PictureFile> mask = OpenMask(name);
+      if (mask) mask_hash = mask->Hash();
+      result.fingerprint = Fingerprint(result.input, mask_hash, extraction);
+      result.is_unchanged = stored == result.fingerprint;
+      if (result.is_unchanged) return result;
+      const GrayImage picture = file.DecodeGray();
+      result.features =
+          ExtractFeatures(picture, DecodeMask(name, mask, picture), extraction.options).features;
       if (result.features.points.empty()) result.reason = kNoSeaPoint;
     } catch (const Error& error) {
+      if (result.input.name.empty()) result.input = DescribeInput(name, picture_path);
       result.reason = error.Finding();
-      result.fingerprint = kUnreadable + result.fingerprint;
+      result.fingerprint = kUnreadable + Fingerprint(result.input, mask_hash, extraction);
     }
     return result;
   }
@@ -74,29 +79,46 @@ class Extractor {
     std::string hash;
   };
 
-  // Empty when there is none, as in COLMAP.
+  static std::string Fingerprint(const RunReport::Input& picture, const std::string& mask_hash,
+                                 const Extraction& extraction) {
+    return kExtractionVersion + (":" + std::to_string(picture.size)) + ":" + picture.hash + ":" +
+           mask_hash + ":" + extraction.hash;
+  }
+
   std::filesystem::path MaskPath(const std::string& name) const {
-    if (options_.reader.mask_path.empty()) return {};
-    const auto path = std::filesystem::path(options_.reader.mask_path) / (name + ".png");
+    return std::filesystem::path(options_.reader.mask_path) / (name + ".png");
+  }
+
+  // nullopt when there is none, as in COLMAP.
+  std::optional<PictureFile> OpenMask(const std::string& name) const {
+    if (options_.reader.mask_path.empty()) return std::nullopt;
     std::error_code error;
-    return std::filesystem::exists(path, error) ? path : std::filesystem::path();
+    if (!std::filesystem::exists(MaskPath(name), error)) return std::nullopt;
+    try {
+      return PictureFile(MaskPath(name));
+    } catch (const Error& failure) {
+      ThrowBadMask(name, failure);
+    }
   }
 
-  static std::string MaskHash(const std::filesystem::path& path) {
-    return path.empty() ? "" : DescribeInput("", path).hash;
-  }
-
-  static GrayImage ReadMask(const std::filesystem::path& path, const GrayImage& picture) {
-    if (path.empty()) return {};
+  // Empty when there is none.
+  GrayImage DecodeMask(const std::string& name, const std::optional<PictureFile>& file,
+                       const GrayImage& picture) const {
+    if (!file) return {};
     GrayImage mask;
     try {
-      mask = ReadGrayImage(path);
-    } catch (const Error& error) {
-      throw Error(path.string(), "its mask " + error.Finding(), "repair or remove the mask");
+      mask = file->DecodeGray();
+    } catch (const Error& failure) {
+      ThrowBadMask(name, failure);
     }
     if (mask.width == picture.width && mask.height == picture.height) return mask;
-    throw Error(path.string(), "its mask is of another size than the picture",
+    throw Error(MaskPath(name).string(), "its mask is of another size than the picture",
                 "make both the same size");
+  }
+
+  [[noreturn]] void ThrowBadMask(const std::string& name, const Error& failure) const {
+    throw Error(MaskPath(name).string(), "its mask " + failure.Finding(),
+                "repair or remove the mask");
   }
 
   const FeatureExtractorOptions& options_;

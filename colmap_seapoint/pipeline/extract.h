@@ -25,7 +25,7 @@ struct FeatureExtractorOptions {
   void Bind(OptionTable* table);
 };
 
-// Of the SI-SeaPoints that pictures get which nothing ties to the others (second_chance.h).
+// Pyramid levels of the SI-SeaPoints of pictures that nothing ties to the others (second_chance.h).
 inline constexpr int kSecondChanceLevels = 5;
 
 // The pictures of a folder: those whose header can be read, and what became of the others.
@@ -35,7 +35,8 @@ struct PictureSet {
   std::vector<RunReport::LeftOut> left_out;
 };
 
-// Of the folder, or of the list where there is one. Throws Error when no picture can be read.
+// The pictures of the folder, or of the list where one is given. Throws Error when none can be
+// read.
 PictureSet ReadPictureSet(const FeatureExtractorOptions& options);
 
 // Extracts the pictures whose file, mask or options changed, and leaves the others alone; those in

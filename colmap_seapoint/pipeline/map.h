@@ -19,8 +19,8 @@ struct MappingPlan {
   MapperJob job;  // but for the pictures, which are known once they are matched
 };
 
-// Before any work. Throws Error when there is no COLMAP, UsageError for a --Mapper option that it
-// does not know.
+// Checks what mapping needs before any work is done. Throws Error when there is no COLMAP,
+// UsageError for a --Mapper option that it does not know.
 MappingPlan PlanMapping(const AutomaticReconstructorOptions& options, const Workspace& workspace);
 
 struct Mapping {

@@ -10,6 +10,8 @@
 #include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/pairing/loop_pairs.h"
 #include "colmap_seapoint/pairing/match_pairs.h"
+#include "colmap_seapoint/pairing/pair_lists.h"
+#include "colmap_seapoint/pairing/spatial_pairs.h"
 #include "feature/matching/overlap_share.h"
 
 namespace colmap_seapoint {

@@ -9,9 +9,8 @@
 #include "colmap_seapoint/base/run_options.h"
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/files/run_report.h"
-#include "colmap_seapoint/pairing/pair_lists.h"
-#include "colmap_seapoint/pairing/spatial_pairs.h"
-#include "feature/match_features.h"
+#include "colmap_seapoint/pairing/pair_options.h"
+#include "feature/matching/matching_options.h"
 
 namespace colmap_seapoint {
 

@@ -20,6 +20,7 @@
 #include "colmap_seapoint/pipeline/scale_models.h"
 #include "colmap_seapoint/pipeline/workspace_database.h"
 #include "colmap_seapoint/report/reconstruction_summary.h"
+#include "feature/match_features.h"
 
 namespace colmap_seapoint {
 namespace {

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/georeference/scale_measurements.h"
 #include "colmap_seapoint/pictures/read_rig.h"
 
 namespace colmap_seapoint {

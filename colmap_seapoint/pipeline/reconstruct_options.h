@@ -6,12 +6,12 @@
 
 #include "colmap_seapoint/base/options.h"
 #include "colmap_seapoint/base/run_options.h"
-#include "colmap_seapoint/georeference/scale_measurements.h"
-#include "colmap_seapoint/pairing/pair_lists.h"
-#include "colmap_seapoint/pictures/image_reader.h"
+#include "colmap_seapoint/georeference/scale_sources.h"
+#include "colmap_seapoint/pairing/pair_options.h"
+#include "colmap_seapoint/pictures/image_reader_options.h"
 #include "densify/partial_densification_options.h"
 #include "feature/detector/seapoint_detector.h"
-#include "feature/match_features.h"
+#include "feature/matching/matching_options.h"
 
 namespace colmap_seapoint {
 
@@ -38,8 +38,8 @@ struct AutomaticReconstructorOptions {
   void Bind(OptionTable* table);
   // The SeaPoints' defaults of the quality.
   void Preset();
-  // Before any work. Throws UsageError for values that contradict each other, Error for paths that
-  // are not there.
+  // To be called before any work. Throws UsageError for values that contradict each other, Error
+  // for paths that are not there.
   void Check() const;
   ForeignOptions Foreign();
 };

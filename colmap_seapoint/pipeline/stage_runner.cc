@@ -24,6 +24,9 @@ using Json = nlohmann::ordered_json;
 constexpr char kFingerprint[] = "fingerprint";
 constexpr char kOutputs[] = "outputs";
 
+// More than all rounds of the mapper together leave.
+constexpr size_t kMaxModels = 1000;
+
 // A killed run's programs need a moment to end.
 constexpr int kLockAttempts = 20;
 constexpr std::chrono::milliseconds kLockPause{100};
@@ -118,7 +121,8 @@ void FinishStage(const Stage& stage, const Json& result,
 void RemoveStaleStages(const std::string& prefix, size_t first, const std::filesystem::path& folder,
                        WorkspaceState* state) {
   std::error_code ignored;
-  for (size_t k = first; state->Read(prefix + std::to_string(k)); ++k) {
+  for (size_t k = first; k < first + kMaxModels; ++k) {
+    if (!state->Read(prefix + std::to_string(k))) continue;  // failed, between two that did not
     state->Forget(prefix + std::to_string(k));
     std::filesystem::remove_all(folder / std::to_string(k), ignored);
   }

@@ -13,7 +13,7 @@
 
 namespace colmap_seapoint {
 
-// What is known of the stages of one workspace, for the one run that holds its lock.
+// The records of one workspace's stages. One run at a time holds the workspace's lock.
 class WorkspaceState {
  public:
   // Creates the folder and holds its lock until the end of this object (and of any program that
@@ -39,7 +39,7 @@ class WorkspaceState {
   int lock_ = -1;
 };
 
-// What a stage's result depends on.
+// Names a stage and all that its result depends on.
 struct Stage {
   std::string name;     // "mapper", "dense_0": of its file
   std::string version;  // of its algorithm, from that algorithm's header
@@ -55,7 +55,7 @@ struct StageOutput {
   std::vector<std::filesystem::path> outputs;
 };
 
-// Hash of version and inputs.
+// A hash of the stage's version and inputs.
 std::string StageFingerprint(const Stage& stage);
 
 // The record of a stage that was done from the same inputs by the same version, and whose outputs
@@ -90,8 +90,8 @@ Result RunStage(WorkspaceState* state, const Stage& stage,
   return std::move(output.result);
 }
 
-// Forgets the stages <prefix><k> from `first` on, as an earlier run left them that had found more
-// models, and removes the folder <k> of each below `folder`.
+// Forgets the stages <prefix><k> from `first` on, which an earlier run left that had found more
+// models, and removes their folders <k> below `folder`.
 void RemoveStaleStages(const std::string& prefix, size_t first, const std::filesystem::path& folder,
                        WorkspaceState* state);
 

@@ -1,4 +1,4 @@
-// Where automatic_reconstructor puts what.
+// The folders and files of a workspace of automatic_reconstructor.
 #pragma once
 
 #include <filesystem>

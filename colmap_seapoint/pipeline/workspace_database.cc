@@ -24,7 +24,8 @@ void Remove(const fs::path& path) {
               "check the folder's permissions");
 }
 
-// With the journals that SQLite keeps beside it: an old one would be played into a new database.
+// Removes the database together with SQLite's journals, because a left-over journal would be played
+// into the new database.
 void RemoveDatabase(const fs::path& path) {
   for (const char* suffix : {"-wal", "-shm", "-journal", ""}) Remove(path.string() + suffix);
 }
@@ -96,7 +97,7 @@ std::string DatabaseFingerprint(const ColmapDatabase& database) {
     hash.Add(numbers, sizeof(numbers));
     hash.Add(camera.params.data(), camera.params.size() * sizeof(double));
   }
-  return hash.Hex();
+  return hash.Text();
 }
 
 }  // namespace colmap_seapoint

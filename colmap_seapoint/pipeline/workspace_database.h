@@ -21,7 +21,7 @@ ColmapDatabase OpenWorkspaceDatabase(const std::filesystem::path& database_path,
                                      const ImageReaderOptions& reader, const Stage& stage,
                                      WorkspaceState* state);
 
-// Hash of images, cameras and of what their SeaPoints were made from.
+// A hash of the images, the cameras, and what the SeaPoints were made from.
 std::string DatabaseFingerprint(const ColmapDatabase& database);
 
 }  // namespace colmap_seapoint

@@ -138,7 +138,7 @@ ViewMaps MapWriter::DrawMaps(size_t image_idx, const CloudRanges& cloud) const {
     const auto geometry = MakePairGeometry(
         camera1, image1.cam_from_world, model_.cameras.at(image2.camera_id), image2.cam_from_world);
     SEAPOINT_CHECK(geometry.has_value());  // it has been densified
-    const SampleFrame frame = SampleFrameOf(*geometry, SampleStep(camera1, options_));
+    const SampleFrame frame = SampleFrameOf(*geometry, SampleStep(camera1, options_.step));
     for (const Block& block : pair.blocks) {
       if (!in_view(block.sphere)) continue;
       points.clear();

@@ -16,7 +16,7 @@ struct ComparisonReport {
 // Every figure with its definition beside it; figures that do not exist are null.
 std::string ComparisonJson(const ComparisonReport& report);
 
-// For a person: one screen.
+// The same for a person, on one screen.
 std::string ComparisonTable(const ComparisonReport& report);
 
 }  // namespace colmap_seapoint

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "colmap_seapoint/base/picture.h"
-#include "densify/overlap/cell_grid.h"
+#include "densify/match/cell_grid.h"
 
 namespace colmap_seapoint {
 
@@ -32,8 +32,8 @@ struct CanvasFrame {
   cv::Size size;
 };
 
-// Masks, as large as the canvas: 255 inside, 0 outside.
-// Within `radius` of a point.
+// The masks are as large as the canvas: 255 inside, 0 outside. This one: within `radius` of a
+// point.
 cv::Mat DiscMask(const CanvasFrame& frame, const std::vector<Eigen::Vector2d>& centers,
                  double radius);
 // Inside the points' convex hull.

@@ -7,6 +7,7 @@
 
 #include "colmap_seapoint/io/image/image_file.h"
 #include "colmap_seapoint/report/debug_canvas.h"
+#include "densify/densify_pair.h"
 #include "densify/match/rectification.h"
 
 namespace colmap_seapoint {
@@ -141,12 +142,12 @@ void DebugFigures::WriteMasks(const PairDebug& pair) const {
                 canvas.WithTitle("mask on V + 2 (" + NameOf(pair.report.image_idx1) +
                                  "): overlap rate " + Percent(rate)));
   }
-  if (pair.covered_range.empty()) return;
+  if (pair.known.covered_range.empty()) return;
   std::vector<uint8_t> covered;
-  for (const float range : pair.covered_range) covered.push_back(range > 0 ? 1 : 0);
+  for (const float range : pair.known.covered_range) covered.push_back(range > 0 ? 1 : 0);
   const double rate = pair.report.overlap;
   Canvas canvas = BlackCanvas(pair);
-  canvas.Tint(CellMask(canvas.Frame(), pair.cells, covered), white, 1);
+  canvas.Tint(CellMask(canvas.Frame(), pair.known.grid, covered), white, 1);
   WriteFigure(WithPercent("fig11_reconstructed", rate),
               canvas.WithTitle(NameOf(pair.report.image_idx1) +
                                ": reconstructed before, by any pair: " + Percent(rate)));
@@ -154,10 +155,10 @@ void DebugFigures::WriteMasks(const PairDebug& pair) const {
 
 void DebugFigures::WriteDisparities(const PairDebug& pair) {
   const auto partial = Place(pair, pair.partial->partial);
-  const auto normal = Place(pair, pair.normal.partial);
+  const auto normal = Place(pair, pair.normal->partial);
   const Eigen::Vector2f range = RangeOf(normal.empty() ? partial : normal);
   Canvas right = BlackCanvas(pair);
-  right.Disparities(normal, SizeOf(pair.normal.partial), kRed, range);
+  right.Disparities(normal, SizeOf(pair.normal->partial), kRed, range);
   right.Disparities(partial, SizeOf(pair.partial->partial), kGreen, range);
   const Image<uint8_t> figure =
       right.WithTitle(NameOf(pair.report.image_idx1) + ", " + NameOf(pair.report.image_idx2) +
@@ -198,12 +199,13 @@ void DebugFigures::WriteRevived(const PairDebug& pair) const {
   const auto partial = Place(pair, pair.partial->partial);
   const Interpair ends(pair);
   Canvas left = BlackCanvas(pair);
-  // The mask is made of cells: a rim of their size is not drawn as hidden by the overlap.
-  const double radius = std::max(0.0, pair.influence_radius1 - pair.cells.cell);
+  // The densifier's mask is made of cells, so that a rim of their size is not hidden by the
+  // overlap.
+  const double radius = std::max(0.0, pair.influence_radius1 - pair.known.grid.cell);
   const CanvasFrame& frame = left.Frame();
   const cv::Mat overlap = HullMask(frame, ends.All1()) | DiscMask(frame, ends.All1(), radius);
   const cv::Mat around_revived =
-      DiscMask(frame, ends.revived1, pair.influence_radius1 + pair.cells.cell);
+      DiscMask(frame, ends.revived1, pair.influence_radius1 + pair.known.grid.cell);
   std::vector<PlacedDisparity> outside, revived, uncovered;
   for (const PlacedDisparity& sample : partial) {
     if (!Holds(frame, overlap, sample.pixel)) {

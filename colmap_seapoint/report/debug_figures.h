@@ -6,7 +6,7 @@
 
 #include "colmap_seapoint/base/image.h"
 #include "colmap_seapoint/base/sparse_model.h"
-#include "densify/sequence/pair_debug.h"
+#include "densify/pair_debug.h"
 
 namespace colmap_seapoint {
 

@@ -13,7 +13,7 @@ constexpr char kHeader[] =
     "image1,image2,pass,baseline,overlap,num_oa,num_na,num_rea,num_seeds,num_failed_seeds,"
     "num_points,rectification_seconds,propagation_seconds,total_seconds,skipped\n";
 
-// Quoted when it holds what would end a field.
+// Text that holds what would end a field stands in quotes.
 std::string Field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";

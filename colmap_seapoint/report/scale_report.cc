@@ -68,7 +68,7 @@ Json SimilarityJson(const Similarity3d& similarity) {
           {"what", "x_new = scale * rotation * x_old + translation"}};
 }
 
-// Commas and quotes in names, as ReadCsvTable takes them.
+// Names with commas and quotes are written as ReadCsvTable reads them.
 std::string Quoted(const std::string& name) {
   if (name.find_first_of(",\"") == std::string::npos) return name;
   std::string text = "\"";

@@ -9,8 +9,8 @@
 
 namespace colmap_seapoint {
 
-// Scale with its standard deviation, frame, residual of every measurement (the 20 largest of
-// many), outliers.
+// For a person: the scale with its standard deviation, the frame, the residual of every measurement
+// (of more than 20 positions, the 20 largest), and which of them are outliers.
 std::string ScaleText(const ScaleMeasurements& measurements, const SimilarityEstimate& estimate);
 
 // One line for a summary: "scale 1.234 +- 0.001; positions 18 of 20, rms 0.05 m".
@@ -20,8 +20,8 @@ std::string ScaleLine(const SimilarityEstimate& estimate);
 void WriteScaleJson(const std::filesystem::path& path, const ScaleMeasurements& measurements,
                     const SimilarityEstimate& estimate);
 
-// kind,name,used,dx_m,dy_m,dz_m,residual_m,sigma_m,model_length,length_m: one row a measurement,
-// residuals model minus measured; empty fields where they mean nothing. Atomic.
+// One row a measurement: kind,name,used,dx_m,dy_m,dz_m,residual_m,sigma_m,model_length,length_m.
+// Residuals are model minus measured; a field is empty where it means nothing. Atomic.
 void WriteScaleCsv(const std::filesystem::path& path, const ScaleMeasurements& measurements,
                    const SimilarityEstimate& estimate);
 

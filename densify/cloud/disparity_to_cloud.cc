@@ -15,7 +15,7 @@ const float* RowOf(const std::vector<float>& values, const SampleGrid& grid, int
   return values.data() + static_cast<size_t>(b) * static_cast<size_t>(grid.width);
 }
 
-// Of the pixel that the place lies in, or the nearest one.
+// The colour of the pixel that the place lies in, or of the nearest one.
 std::array<uint8_t, 3> ColorNear(const Picture& picture, float x, float y) {
   return ColorAt(picture, std::clamp(static_cast<int>(x), 0, picture.luma.width - 1),
                  std::clamp(static_cast<int>(y), 0, picture.luma.height - 1));
@@ -80,6 +80,32 @@ class RowToPoints {
   std::vector<float> x_, y_;
 };
 
+// The samples of a picture's cell.
+struct CellSum {
+  Eigen::Vector3f point = Eigen::Vector3f::Zero();  // (x, y, 1) / disparity: linear in the place
+  int matched = 0, all = 0;
+};
+
+std::vector<CellSum> SumCells(const PartialSurface& surface, const SampleGrid& nodes,
+                              const std::vector<int>& cell_of_node, size_t num_cells) {
+  const SampleGrid& grid = surface.grid;
+  std::vector<CellSum> sums(num_cells);
+  for (int b = 0; b < grid.height; ++b) {
+    const float* row = RowOf(surface.disparity, grid, b);
+    const float y = static_cast<float>(grid.RectY(b));
+    for (int a = 0; a < grid.width; ++a) {
+      const int cell = cell_of_node[nodes.IndexAt(grid.PixelX(a), grid.PixelY(b))];
+      if (cell < 0) continue;
+      CellSum& sum = sums[static_cast<size_t>(cell)];
+      ++sum.all;
+      if (row[a] <= 0) continue;
+      ++sum.matched;
+      sum.point += Eigen::Vector3f(static_cast<float>(grid.RectX(a)), y, 1) / row[a];
+    }
+  }
+  return sums;
+}
+
 }  // namespace
 
 PartialCloud MakePartialCloud(const PartialSurface& surface, const PairGeometry& geometry,
@@ -107,39 +133,21 @@ PartialCloud MakePartialCloud(const PartialSurface& surface, const PairGeometry&
 
 CellTally TallyCells(const PartialSurface& surface, const PairGeometry& geometry,
                      const SampleGrid& nodes, const std::vector<int>& cell_of_node,
-                     const CellGrid& cells, const std::vector<uint8_t>& is_new) {
-  const SampleGrid& grid = surface.grid;
-  struct Sum {
-    Eigen::Vector3f point = Eigen::Vector3f::Zero();  // (x, y, 1) / disparity: linear in the place
-    int matched = 0, all = 0;
-  };
-  std::vector<Sum> sums(cells.Size());
-  for (int b = 0; b < grid.height; ++b) {
-    const float* row = RowOf(surface.disparity, grid, b);
-    const float y = static_cast<float>(grid.RectY(b));
-    for (int a = 0; a < grid.width; ++a) {
-      const int cell = cell_of_node[nodes.IndexAt(grid.PixelX(a), grid.PixelY(b))];
-      if (cell < 0) continue;
-      Sum& sum = sums[static_cast<size_t>(cell)];
-      ++sum.all;
-      if (row[a] <= 0) continue;
-      ++sum.matched;
-      sum.point += Eigen::Vector3f(static_cast<float>(grid.RectX(a)), y, 1) / row[a];
-    }
-  }
+                     const KnownCells& known) {
+  const std::vector<CellSum> sums = SumCells(surface, nodes, cell_of_node, known.grid.Size());
   CellTally tally;
-  tally.filled.assign(cells.Size(), 0);
+  tally.filled.assign(sums.size(), 0);
   for (size_t cell = 0; cell < sums.size(); ++cell) {
-    const Sum& sum = sums[cell];
+    const CellSum& sum = sums[cell];
     if (sum.matched == 0) continue;
     tally.filled[cell] = static_cast<float>(sum.matched) / static_cast<float>(sum.all);
-    if (tally.filled[cell] < kMinCoveredCell || !is_new[cell]) continue;
+    if (tally.filled[cell] < kMinCoveredCell || !known.IsNew(cell)) continue;
     const Eigen::Vector3d mean = sum.point.cast<double>() / sum.matched;
     const Eigen::Vector3d center =
         geometry.PointInWorld(mean.x() / mean.z(), mean.y() / mean.z(), 1 / mean.z());
     const double range = (center - geometry.center1).norm();
     tally.footprint.patches.push_back(
-        {center.cast<float>(), static_cast<float>(cells.cell * range / geometry.focal)});
+        {center.cast<float>(), static_cast<float>(known.grid.cell * range / geometry.focal)});
   }
   tally.footprint.UpdateSphere();
   return tally;

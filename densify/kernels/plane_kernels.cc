@@ -91,6 +91,27 @@ class PaddedRows {
   int filled_ = -1000000;
 };
 
+// The plane through the samples, as it stands at their centre: how far it lies from the centre's
+// value, and its slopes a sample. All 0 where too few samples agree, or all lie on a line.
+struct Plane {
+  VF moved, p, q;
+};
+
+HWY_INLINE Plane FitPlane(const Sums& s) {
+  const DF df;
+  const VF mean_u = hn::Div(s.u, s.n), mean_v = hn::Div(s.v, s.n), mean_d = hn::Div(s.d, s.n);
+  const VF uu = hn::Sub(s.uu, hn::Mul(s.u, mean_u)), uv = hn::Sub(s.uv, hn::Mul(s.u, mean_v));
+  const VF vv = hn::Sub(s.vv, hn::Mul(s.v, mean_v));
+  const VF ud = hn::Sub(s.ud, hn::Mul(s.u, mean_d)), vd = hn::Sub(s.vd, hn::Mul(s.v, mean_d));
+  const VF det = hn::Sub(hn::Mul(uu, vv), hn::Mul(uv, uv));
+  const auto fits = hn::And(hn::Ge(s.n, hn::Set(df, kMinSupport)), hn::Gt(det, hn::Set(df, 0.5f)));
+  const VF safe = hn::IfThenElse(fits, det, hn::Set(df, 1.0f));
+  const VF p = hn::IfThenElseZero(fits, hn::Div(hn::Sub(hn::Mul(vv, ud), hn::Mul(uv, vd)), safe));
+  const VF q = hn::IfThenElseZero(fits, hn::Div(hn::Sub(hn::Mul(uu, vd), hn::Mul(uv, ud)), safe));
+  const VF moved = hn::Sub(mean_d, hn::Add(hn::Mul(p, mean_u), hn::Mul(q, mean_v)));
+  return {hn::IfThenElseZero(fits, moved), p, q};
+}
+
 void FitRows(const Map& map, int begin, int end, int radius, float tolerance, float slope_scale,
              float* value, float* slope_x, float* slope_y, uint8_t* support) {
   const DF df;
@@ -116,24 +137,12 @@ void FitRows(const Map& map, int begin, int end, int radius, float tolerance, fl
         continue;
       }
       const Sums s = SumAround(rows, a, radius, center, hn::Set(df, tolerance));
-      const VF mean_u = hn::Div(s.u, s.n), mean_v = hn::Div(s.v, s.n), mean_d = hn::Div(s.d, s.n);
-      const VF uu = hn::Sub(s.uu, hn::Mul(s.u, mean_u)), uv = hn::Sub(s.uv, hn::Mul(s.u, mean_v));
-      const VF vv = hn::Sub(s.vv, hn::Mul(s.v, mean_v));
-      const VF ud = hn::Sub(s.ud, hn::Mul(s.u, mean_d)), vd = hn::Sub(s.vd, hn::Mul(s.v, mean_d));
-      const VF det = hn::Sub(hn::Mul(uu, vv), hn::Mul(uv, uv));
-      const auto fits =
-          hn::And(hn::Ge(s.n, hn::Set(df, kMinSupport)), hn::Gt(det, hn::Set(df, 0.5f)));
-      const VF safe = hn::IfThenElse(fits, det, hn::Set(df, 1.0f));
-      const VF p =
-          hn::IfThenElseZero(fits, hn::Div(hn::Sub(hn::Mul(vv, ud), hn::Mul(uv, vd)), safe));
-      const VF q =
-          hn::IfThenElseZero(fits, hn::Div(hn::Sub(hn::Mul(uu, vd), hn::Mul(uv, ud)), safe));
-      const VF moved = hn::Sub(mean_d, hn::Add(hn::Mul(p, mean_u), hn::Mul(q, mean_v)));
-      const VF fitted = hn::Add(center, hn::IfThenElseZero(fits, moved));
+      const Plane plane = FitPlane(s);
+      const VF fitted = hn::Add(center, plane.moved);
       const VF scale = hn::Set(df, slope_scale);
       hn::Store(hn::IfThenElseZero(there, fitted), df, out_value);
-      hn::Store(hn::Mul(p, scale), df, out_x);
-      hn::Store(hn::Mul(q, scale), df, out_y);
+      hn::Store(hn::Mul(plane.p, scale), df, out_x);
+      hn::Store(hn::Mul(plane.q, scale), df, out_y);
       const auto n = hn::ConvertTo(di, hn::IfThenElseZero(there, s.n));
       hn::Store(hn::DemoteTo(du8, n), du8, out_support);
       std::copy_n(out_value, count, value + row + a);

@@ -256,6 +256,47 @@ HWY_INLINE VF InverseSpread(VI sum, VI squares, int window, const int16_t* cente
   return hn::IfThenElseZero(hn::RebindMask(df, usable), hn::Div(hn::Set(df, 1.0f), spread));
 }
 
+// Sum and inverse spread of the windows of `warped` along a row, for ScoreRow.
+void SpreadRow(const Frame& frame, int window, size_t center, Scratch* scratch) {
+  const DI di;
+  const DF df;
+  const int half = frame.half;
+  const int16_t* warped_row = scratch->warped + center * kStride + kFront;
+  for (int c = half; c < frame.columns - half; c += static_cast<int>(hn::Lanes(df))) {
+    const VI sum = Across(scratch->column[2], c, half);
+    hn::StoreU(sum, di, scratch->sum2 + kFront + c);
+    hn::StoreU(InverseSpread(sum, Across(scratch->column[3], c, half), window, warped_row, c), df,
+               scratch->inverse_spread + kFront + c);
+  }
+}
+
+// The best of the five scores with its neighbours; score 0 where there is none.
+struct Peak {
+  VF score, before, after, shift;
+};
+
+// Walks along the five scores; a maximum needs both its neighbours, and they must be usable: less
+// than `unusable`.
+template <typename ScoreAt>
+HWY_INLINE Peak FindPeak(const ScoreAt& score_at, VF unusable) {
+  const DF df;
+  VF before = score_at(-kReach), here = score_at(-kReach + 1);
+  const VF zero = hn::Zero(df);
+  Peak peak = {zero, zero, zero, zero};
+  for (int shift = -kReach + 1; shift < kReach; ++shift) {
+    const VF after = score_at(shift + 1);
+    const auto usable = hn::And(hn::Gt(here, peak.score), hn::Lt(here, unusable));
+    const auto better = hn::And(usable, hn::And(hn::Ge(here, before), hn::Ge(here, after)));
+    peak.before = hn::IfThenElse(better, before, peak.before);
+    peak.after = hn::IfThenElse(better, after, peak.after);
+    peak.shift = hn::IfThenElse(better, hn::Set(df, static_cast<float>(shift)), peak.shift);
+    peak.score = hn::IfThenElse(better, here, peak.score);
+    before = here;
+    here = after;
+  }
+  return peak;
+}
+
 // Scores of one row of windows, centred on row `center` of the scratch.
 void ScoreRow(const Pair& pair, const Frame& frame, int width, size_t center, Scratch* scratch,
               float* residual, float* score) {
@@ -263,18 +304,11 @@ void ScoreRow(const Pair& pair, const Frame& frame, int width, size_t center, Sc
   const DF df;
   const int window = pair.window, half = frame.half;
   const int16_t* left_row = scratch->left + center * kStride + kFront;
-  const int16_t* warped_row = scratch->warped + center * kStride + kFront;
   const float* predicted = scratch->prediction + center * kStride + kFront;
-  const int lanes = static_cast<int>(hn::Lanes(df));
-  for (int c = half; c < frame.columns - half; c += lanes) {
-    const VI sum = Across(scratch->column[2], c, half);
-    hn::StoreU(sum, di, scratch->sum2 + kFront + c);
-    hn::StoreU(InverseSpread(sum, Across(scratch->column[3], c, half), window, warped_row, c), df,
-               scratch->inverse_spread + kFront + c);
-  }
+  SpreadRow(frame, window, center, scratch);
   const VI n = hn::Set(di, window * window);
   const VF unusable = hn::Set(df, 2.0f);
-  for (int x = 0; x < width; x += lanes) {
+  for (int x = 0; x < width; x += static_cast<int>(hn::Lanes(df))) {
     const int c = x + half + kReach;
     const VI sum1 = Across(scratch->column[0], c, half);
     const VF spread1 =
@@ -287,31 +321,18 @@ void ScoreRow(const Pair& pair, const Frame& frame, int width, size_t center, Sc
       const VF correlation = hn::Mul(hn::Mul(hn::ConvertTo(df, covariance), spread1), spread2);
       return hn::IfThenElse(hn::Eq(spread2, hn::Zero(df)), unusable, correlation);
     };
-    // Walk along the five scores; a maximum needs both its neighbours, and they must be usable.
-    VF before = score_at(-kReach), here = score_at(-kReach + 1);
-    VF best = hn::Zero(df), best_before = best, best_after = best, best_shift = best;
-    for (int shift = -kReach + 1; shift < kReach; ++shift) {
-      const VF after = score_at(shift + 1);
-      const auto usable = hn::And(hn::Gt(here, best), hn::Lt(here, unusable));
-      const auto better = hn::And(usable, hn::And(hn::Ge(here, before), hn::Ge(here, after)));
-      best_before = hn::IfThenElse(better, before, best_before);
-      best_after = hn::IfThenElse(better, after, best_after);
-      best_shift = hn::IfThenElse(better, hn::Set(df, static_cast<float>(shift)), best_shift);
-      best = hn::IfThenElse(better, here, best);
-      before = here;
-      here = after;
-    }
+    const Peak peak = FindPeak(score_at, unusable);
     // The top of the parabola through the maximum and its neighbours.
-    const VF curvature = hn::Sub(hn::Add(best_before, best_after), hn::Add(best, best));
+    const VF curvature = hn::Sub(hn::Add(peak.before, peak.after), hn::Add(peak.score, peak.score));
     const VF offset =
-        hn::Div(hn::Mul(hn::Set(df, 0.5f), hn::Sub(best_before, best_after)), curvature);
-    const auto found = hn::And(hn::Gt(best, hn::Zero(df)), hn::Lt(curvature, hn::Zero(df)));
+        hn::Div(hn::Mul(hn::Set(df, 0.5f), hn::Sub(peak.before, peak.after)), curvature);
+    const auto found = hn::And(hn::Gt(peak.score, hn::Zero(df)), hn::Lt(curvature, hn::Zero(df)));
     // A shift moves along picture 2, the prediction with it: d = shift + prediction(x - shift).
     const VF slope = hn::Mul(hn::Set(df, 0.5f), hn::Sub(hn::LoadU(df, predicted + c + 1),
                                                         hn::LoadU(df, predicted + c - 1)));
-    const VF moved = hn::Mul(hn::Add(best_shift, offset), hn::Sub(hn::Set(df, 1.0f), slope));
+    const VF moved = hn::Mul(hn::Add(peak.shift, offset), hn::Sub(hn::Set(df, 1.0f), slope));
     hn::StoreU(hn::IfThenElseZero(found, moved), df, residual + x);
-    hn::StoreU(hn::IfThenElseZero(found, best), df, score + x);
+    hn::StoreU(hn::IfThenElseZero(found, peak.score), df, score + x);
   }
 }
 

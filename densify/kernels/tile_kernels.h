@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "colmap_seapoint/base/image.h"
-#include "densify/match/propagation.h"
+#include "densify/kernels/node_step.h"
 
 namespace colmap_seapoint {
 namespace tile {

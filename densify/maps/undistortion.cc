@@ -26,7 +26,8 @@ struct Span {
   void NotAbove(double value) { high = std::min(high, value); }
 };
 
-// Of at least and at most so many pixels, around the place that the axis of the lens has in it.
+// A span of at least and at most so many pixels, around the place that the axis of the lens has in
+// it.
 void KeepWithin(double focal, double size, Span* span) {
   const double pixels = focal * (span->high - span->low);
   if (!(span->high > span->low) || pixels < kMinSize * size) {

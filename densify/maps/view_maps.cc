@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -18,6 +19,27 @@ constexpr double kMaxSteepness = 4;  // change of depth over a patch, in samples
 constexpr double kSameSurface = 4;   // difference in depth, in samples' distances
 constexpr double kMinCosine = 0.03;  // of a patch that is not seen edge-on
 
+// Where a plane through a sample meets the rays to the four corners of its patch, pair's frame.
+struct PatchCorners {
+  std::array<Eigen::Vector3d, 4> places;
+  bool are_steep = false;  // one lies too far before or behind the sample
+};
+
+// rect_x, rect_y: of the sample, rect pixels; half: of a patch, rect pixels; max_step: in depth.
+PatchCorners CornersOn(const Eigen::Vector3d& rect_normal, const Eigen::Vector3d& in_rect,
+                       double rect_x, double rect_y, double half, double focal, double max_step) {
+  PatchCorners corners;
+  const double rect_offset = rect_normal.dot(in_rect);
+  for (size_t k = 0; k < 4; ++k) {
+    const Eigen::Vector3d ray((rect_x + (k % 2 == 0 ? -half : half)) / focal,
+                              (rect_y + (k < 2 ? -half : half)) / focal, 1);
+    const double z = rect_offset / rect_normal.dot(ray);
+    corners.are_steep |= !(std::abs(z - in_rect.z()) <= max_step);
+    corners.places[k] = z * ray;
+  }
+  return corners;
+}
+
 }  // namespace
 
 SampleFrame SampleFrameOf(const PairGeometry& geometry, int step) {
@@ -25,12 +47,17 @@ SampleFrame SampleFrameOf(const PairGeometry& geometry, int step) {
           static_cast<double>(step)};
 }
 
-// Of a pair and this view.
+// What all samples of a pair share in this view.
 struct ViewMapRenderer::PairTerms {
   Eigen::Matrix3d rect_from_world, rect_from_cam;
   Eigen::Vector3d rect_center;  // the view's centre in the pair's frame
   Eigen::Vector3d pair_center;
   double focal, step, half;  // half: of a patch, rect pixels
+};
+
+// Columns and rows of pixels, inclusive.
+struct ViewMapRenderer::PixelBox {
+  int c0, c1, r0, r1;
 };
 
 // The plane normal . x = offset around a sample, camera's frame.
@@ -40,25 +67,22 @@ struct ViewMapRenderer::Patch {
   double rect_x, rect_y;  // of the sample, rect pixels
   double tolerance;       // of depths of one surface
   Eigen::Vector3f seen;   // what the normal map says; 0 from behind
-  int c0, c1, r0, r1;     // columns and rows that it may cover, inclusive
+  PixelBox box;           // what it may cover
 };
 
 ViewMapRenderer::ViewMapRenderer(const Camera& camera, const Rigid3d& cam_from_world)
-    : width_(camera.width),
-      height_(camera.height),
-      fx_(camera.FocalX()),
-      fy_(camera.FocalY()),
-      cx_(camera.PrincipalX()),
-      cy_(camera.PrincipalY()),
+    : lens_{camera.FocalX(), camera.FocalY(), camera.PrincipalX(), camera.PrincipalY()},
       rotation_(cam_from_world.rotation.toRotationMatrix()),
       translation_(cam_from_world.translation),
       center_(cam_from_world.OriginInSource()),
       aside_(camera.width, camera.height) {
   SEAPOINT_CHECK(camera.model == CameraModel::kPinhole);
-  maps_.depth = FloatImage(width_, height_);
-  maps_.normal = FloatImage(width_, height_, 3);
-  cam_from_pixel_ << 1 / fx_, 0, -cx_ / fx_, 0, 1 / fy_, -cy_ / fy_, 0, 0, 1;
-  sides_ << fx_, 0, cx_, -fx_, 0, width_ - cx_, 0, fy_, cy_, 0, -fy_, height_ - cy_;
+  const auto& [fx, fy, cx, cy] = lens_;
+  const int width = camera.width, height = camera.height;
+  maps_.depth = FloatImage(width, height);
+  maps_.normal = FloatImage(width, height, 3);
+  cam_from_pixel_ << 1 / fx, 0, -cx / fx, 0, 1 / fy, -cy / fy, 0, 0, 1;
+  sides_ << fx, 0, cx, -fx, 0, width - cx, 0, fy, cy, 0, -fy, height - cy;
   sides_.rowwise().normalize();
 }
 
@@ -76,68 +100,73 @@ void ViewMapRenderer::Add(const SampleFrame& frame, const DensePoint* points, si
   pair.focal = frame.focal;
   pair.step = frame.step;
   pair.half = (0.5 + kOverlap) * frame.step;
-  Patch patch;
   for (size_t i = 0; i < count; ++i) {
-    if (MakePatch(pair, points[i], &patch)) Draw(pair, patch);
+    const std::optional<Patch> patch = MakePatch(pair, points[i]);
+    if (patch) Draw(pair, *patch);
   }
 }
 
-// False when nothing of it can be seen.
-bool ViewMapRenderer::MakePatch(const PairTerms& pair, const DensePoint& point,
-                                Patch* patch) const {
+std::optional<ViewMapRenderer::Patch> ViewMapRenderer::MakePatch(const PairTerms& pair,
+                                                                 const DensePoint& point) const {
   const Eigen::Vector3d in_cam = rotation_ * point.xyz.cast<double>() + translation_;
-  if (!(in_cam.z() > 0)) return false;
+  if (!(in_cam.z() > 0)) return std::nullopt;
   const Eigen::Vector3d in_rect =
       pair.rect_from_world * (point.xyz.cast<double>() - pair.pair_center);
-  if (!(in_rect.z() > 0)) return false;
+  if (!(in_rect.z() > 0)) return std::nullopt;
   const double spacing = in_rect.z() * pair.step / pair.focal;
-  if ((sides_ * in_cam).minCoeff() < -2 * kMaxSteepness * spacing) return false;
-
+  if ((sides_ * in_cam).minCoeff() < -2 * kMaxSteepness * spacing) return std::nullopt;
   const Eigen::Vector3d normal = rotation_ * point.normal.cast<double>();
   const double offset = normal.dot(in_cam);
-  if (!(std::abs(offset) > kMinCosine * in_cam.norm())) return false;
-  patch->seen.setZero();
-  if (offset < 0) patch->seen = normal.cast<float>();
-  patch->rect_x = pair.focal * in_rect.x() / in_rect.z();
-  patch->rect_y = pair.focal * in_rect.y() / in_rect.z();
-  patch->tolerance = kSameSurface * spacing;
+  if (!(std::abs(offset) > kMinCosine * in_cam.norm())) return std::nullopt;
 
+  Patch patch;
+  patch.seen.setZero();
+  if (offset < 0) patch.seen = normal.cast<float>();
+  patch.rect_x = pair.focal * in_rect.x() / in_rect.z();
+  patch.rect_y = pair.focal * in_rect.y() / in_rect.z();
+  patch.tolerance = kSameSurface * spacing;
   Eigen::Vector3d rect_normal = pair.rect_from_cam * normal;
-  Eigen::Vector3d corners[4];
-  for (const bool is_flat : {false, true}) {
-    // A plane along its own pair's rays would reach far beyond its neighbours.
-    if (is_flat) rect_normal = -in_rect.normalized();
-    const double rect_offset = rect_normal.dot(in_rect);
-    bool is_steep = false;
-    for (int k = 0; k < 4; ++k) {
-      const Eigen::Vector3d ray(
-          (patch->rect_x + (k % 2 == 0 ? -pair.half : pair.half)) / pair.focal,
-          (patch->rect_y + (k < 2 ? -pair.half : pair.half)) / pair.focal, 1);
-      const double z = rect_offset / rect_normal.dot(ray);
-      is_steep |= !(std::abs(z - in_rect.z()) <= kMaxSteepness * spacing);
-      corners[k] = z * ray;
-    }
-    if (!is_steep) break;
+  const auto corners_on = [&](const Eigen::Vector3d& of_plane) {
+    return CornersOn(of_plane, in_rect, patch.rect_x, patch.rect_y, pair.half, pair.focal,
+                     kMaxSteepness * spacing);
+  };
+  PatchCorners corners = corners_on(rect_normal);
+  if (corners.are_steep) {
+    // A plane along its own pair's rays would reach far beyond its neighbours: it is drawn flat.
+    rect_normal = -in_rect.normalized();
+    corners = corners_on(rect_normal);
   }
-  patch->normal = pair.rect_from_cam.transpose() * rect_normal;
-  patch->offset = patch->normal.dot(in_cam);
-  if (!(std::abs(patch->offset) > kMinCosine * in_cam.norm())) return false;
+  patch.normal = pair.rect_from_cam.transpose() * rect_normal;
+  patch.offset = patch.normal.dot(in_cam);
+  if (!(std::abs(patch.offset) > kMinCosine * in_cam.norm())) return std::nullopt;
+  const std::optional<PixelBox> box = BoxOf(corners.places, pair, in_cam.z());
+  if (!box) return std::nullopt;
+  patch.box = *box;
+  return patch;
+}
 
-  double c0 = width_, c1 = -1, r0 = height_, r1 = -1;
+// Around a patch's corners (pair's frame), cut to the picture. nullopt: nothing of it is in view,
+// or it reaches behind the camera. `depth`: of its sample.
+std::optional<ViewMapRenderer::PixelBox> ViewMapRenderer::BoxOf(
+    const std::array<Eigen::Vector3d, 4>& corners, const PairTerms& pair, double depth) const {
+  const int width = maps_.depth.width, height = maps_.depth.height;
+  double c0 = width, c1 = -1, r0 = height, r1 = -1;
   for (const Eigen::Vector3d& corner : corners) {
     const Eigen::Vector3d p = pair.rect_from_cam.transpose() * (corner - pair.rect_center);
-    if (!(p.z() > 1e-3 * in_cam.z())) return false;
-    const double c = fx_ * p.x() / p.z() + cx_, r = fy_ * p.y() / p.z() + cy_;
+    if (!(p.z() > 1e-3 * depth)) return std::nullopt;
+    const double c = lens_.fx * p.x() / p.z() + lens_.cx, r = lens_.fy * p.y() / p.z() + lens_.cy;
     c0 = std::min(c0, c);
     c1 = std::max(c1, c);
     r0 = std::min(r0, r);
     r1 = std::max(r1, r);
   }
-  patch->c0 = static_cast<int>(std::ceil(std::clamp(c0, 0.0, static_cast<double>(width_))));
-  patch->c1 = static_cast<int>(std::floor(std::clamp(c1, -1.0, width_ - 1.0)));
-  patch->r0 = static_cast<int>(std::ceil(std::clamp(r0, 0.0, static_cast<double>(height_))));
-  patch->r1 = static_cast<int>(std::floor(std::clamp(r1, -1.0, height_ - 1.0)));
-  return patch->c0 <= patch->c1 && patch->r0 <= patch->r1;
+  const PixelBox box = {
+      static_cast<int>(std::ceil(std::clamp(c0, 0.0, static_cast<double>(width)))),
+      static_cast<int>(std::floor(std::clamp(c1, -1.0, width - 1.0))),
+      static_cast<int>(std::ceil(std::clamp(r0, 0.0, static_cast<double>(height)))),
+      static_cast<int>(std::floor(std::clamp(r1, -1.0, height - 1.0)))};
+  if (box.c0 > box.c1 || box.r0 > box.r1) return std::nullopt;
+  return box;
 }
 
 // A pixel's ray d meets the plane at depth 1 / w, w = n . d / offset, in the pair's frame at
@@ -147,8 +176,8 @@ void ViewMapRenderer::Draw(const PairTerms& pair, const Patch& patch) {
   const Eigen::RowVector3d w_of = w_of_ray * cam_from_pixel_;
   const Eigen::Matrix3d rect_of =
       (pair.rect_from_cam + pair.rect_center * w_of_ray) * cam_from_pixel_;
-  for (int r = patch.r0; r <= patch.r1; ++r) {
-    for (int c = patch.c0; c <= patch.c1; ++c) {
+  for (int r = patch.box.r0; r <= patch.box.r1; ++r) {
+    for (int c = patch.box.c0; c <= patch.box.c1; ++c) {
       const Eigen::Vector3d place(c, r, 1);
       const double w = w_of * place;
       const Eigen::Vector3d q = rect_of * place;

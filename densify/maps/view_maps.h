@@ -6,7 +6,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "colmap_seapoint/base/camera.h"
@@ -54,14 +56,20 @@ class ViewMapRenderer {
  private:
   struct Patch;
   struct PairTerms;
+  struct PixelBox;
+  struct Intrinsics {
+    double fx, fy, cx, cy;  // pixels
+  };
 
-  bool MakePatch(const PairTerms& pair, const DensePoint& point, Patch* patch) const;
+  // nullopt when nothing of it can be seen.
+  std::optional<Patch> MakePatch(const PairTerms& pair, const DensePoint& point) const;
+  std::optional<PixelBox> BoxOf(const std::array<Eigen::Vector3d, 4>& corners,
+                                const PairTerms& pair, double depth) const;
   void Draw(const PairTerms& pair, const Patch& patch);
 
-  int width_, height_;
-  double fx_, fy_, cx_, cy_;
+  Intrinsics lens_;
   Eigen::Matrix3d cam_from_pixel_;  // (c, r, 1) -> ray with z = 1
-  Eigen::Matrix3d rotation_;
+  Eigen::Matrix3d rotation_;        // camera from world
   Eigen::Vector3d translation_, center_;
   Eigen::Matrix<double, 4, 3> sides_;  // of the pyramid in view: unit normals inwards, camera frame
   ViewMaps maps_;

@@ -68,6 +68,15 @@ class WindowMatcher {
   const int size_, half_, column_shift_, row_shift_;
 };
 
+template <typename Visit>
+void ForEachNeighbor(const SampleGrid& grid, int node, const Visit& visit) {
+  const int a = node % grid.width, b = node / grid.width;
+  if (b > 0) visit(node - grid.width);
+  if (a > 0) visit(node - 1);
+  if (a + 1 < grid.width) visit(node + 1);
+  if (b + 1 < grid.height) visit(node + grid.width);
+}
+
 class Propagation {
  public:
   Propagation(const RectPicture& picture1, const RectPicture& picture2, const Gate& gate,
@@ -78,9 +87,7 @@ class Propagation {
         options_(options),
         num_threads_(num_threads),
         search_(grid_.step / 2),
-        state_(grid_.Size()),
-        generation_(grid_.Size(), -1),
-        visited_(grid_.Size(), -1) {}
+        nodes_(grid_.Size()) {}
 
   PartialDisparity Run(const std::vector<Seed>& seeds) {
     PlantSeeds(seeds);
@@ -94,6 +101,12 @@ class Propagation {
   }
 
  private:
+  struct Node {
+    Candidate held;
+    int generation = -1;  // in which it was last matched
+    int visited = -1;     // generation that last collected it as a target
+  };
+
   // The first generation: every seed at its nearest sample, best of a few disparities.
   void PlantSeeds(const std::vector<Seed>& seeds) {
     std::vector<int> targets(seeds.size(), -1);
@@ -121,26 +134,20 @@ class Propagation {
     Commit(planted, planted_candidates, 0);
   }
 
-  template <typename Visit>
-  void ForEachNeighbor(int node, const Visit& visit) const {
-    const int a = node % grid_.width, b = node / grid_.width;
-    if (b > 0) visit(node - grid_.width);
-    if (a > 0) visit(node - 1);
-    if (a + 1 < grid_.width) visit(node + 1);
-    if (b + 1 < grid_.height) visit(node + grid_.width);
-  }
+  const Candidate& HeldBy(int node) const { return nodes_[static_cast<size_t>(node)].held; }
 
   // Neighbours of the frontier that are free, or that another region holds at another disparity.
   std::vector<int> CollectTargets(int generation) {
     std::vector<int> targets;
     for (const int node : frontier_) {
-      const int disparity = state_[static_cast<size_t>(node)].disparity;
-      ForEachNeighbor(node, [&](int neighbor) {
-        const size_t n = static_cast<size_t>(neighbor);
-        if (visited_[n] == generation || gate_[n] == Gate::kClosed) return;
-        const int held = state_[n].disparity;
+      const int disparity = HeldBy(node).disparity;
+      ForEachNeighbor(grid_, node, [&](int neighbor) {
+        Node& target = nodes_[static_cast<size_t>(neighbor)];
+        if (target.visited == generation) return;
+        if (gate_[static_cast<size_t>(neighbor)] == Gate::kClosed) return;
+        const int held = target.held.disparity;
         if (held != kUnmatched && std::abs(held - disparity) <= search_) return;
-        visited_[n] = generation;
+        target.visited = generation;
         targets.push_back(neighbor);
       });
     }
@@ -163,11 +170,11 @@ class Propagation {
   Candidate BestFromNeighbors(int target, int generation) const {
     std::array<int, 4 * (2 * kMaxSearch + 1)> disparities;
     int count = 0;
-    const int held = state_[static_cast<size_t>(target)].disparity;
-    ForEachNeighbor(target, [&](int neighbor) {
-      const size_t n = static_cast<size_t>(neighbor);
-      if (generation_[n] != generation) return;
-      for (int d = state_[n].disparity - search_; d <= state_[n].disparity + search_; ++d) {
+    const int held = HeldBy(target).disparity;
+    ForEachNeighbor(grid_, target, [&](int neighbor) {
+      const Node& node = nodes_[static_cast<size_t>(neighbor)];
+      if (node.generation != generation) return;
+      for (int d = node.held.disparity - search_; d <= node.held.disparity + search_; ++d) {
         int* const end = disparities.data() + count;
         if (d == held || std::find(disparities.data(), end, d) != end) continue;
         disparities[static_cast<size_t>(count++)] = d;
@@ -206,13 +213,15 @@ class Propagation {
     frontier_.clear();
     for (size_t t = 0; t < targets.size(); ++t) {
       const Candidate& candidate = candidates[t];
-      const size_t node = static_cast<size_t>(targets[t]);
-      Candidate& held = state_[node];
+      Node& node = nodes_[static_cast<size_t>(targets[t])];
       if (candidate.disparity == kUnmatched) continue;
-      if (held.disparity != kUnmatched && candidate.score < held.score + kMinImprovement) continue;
-      held = candidate;
-      if (generation_[node] != generation) frontier_.push_back(targets[t]);
-      generation_[node] = generation;
+      if (node.held.disparity != kUnmatched &&
+          candidate.score < node.held.score + kMinImprovement) {
+        continue;
+      }
+      node.held = candidate;
+      if (node.generation != generation) frontier_.push_back(targets[t]);
+      node.generation = generation;
     }
   }
 
@@ -228,7 +237,7 @@ class Propagation {
       for (int a = 0; a < grid_.width; ++a) {
         const size_t node =
             static_cast<size_t>(b) * static_cast<size_t>(grid_.width) + static_cast<size_t>(a);
-        if (state_[node].disparity != kUnmatched) RefineSubPixel(node, &partial);
+        if (nodes_[node].held.disparity != kUnmatched) RefineSubPixel(node, &partial);
       }
     });
     return partial;
@@ -243,7 +252,7 @@ class Propagation {
         const size_t sample =
             static_cast<size_t>(v) * static_cast<size_t>(grid_.width) + static_cast<size_t>(u);
         ++all;
-        if (state_[sample].disparity != kUnmatched) ++matched;
+        if (nodes_[sample].held.disparity != kUnmatched) ++matched;
       }
     }
     return 2 * matched >= all;
@@ -256,7 +265,7 @@ class Propagation {
     const int j = grid_.PixelY(static_cast<int>(node) / grid_.width);
     constexpr int kMaxClimb = 2;
     std::array<float, 2 * kMaxClimb + 3> scores;
-    const int first = state_[node].disparity - kMaxClimb - 1;
+    const int first = nodes_[node].held.disparity - kMaxClimb - 1;
     matcher_.ScoreRun(i, j, first, static_cast<int>(scores.size()), scores.data());
     size_t at = kMaxClimb + 1;
     for (int climb = 0; climb <= kMaxClimb; ++climb) {
@@ -279,26 +288,12 @@ class Propagation {
   const PropagationOptions options_;
   const int num_threads_;
   const int search_;  // pixels of disparity around a neighbour's
-  std::vector<Candidate> state_;
-  std::vector<int> generation_;  // in which a sample was last matched
-  std::vector<int> visited_;     // generation that last collected it as a target
+  std::vector<Node> nodes_;
   std::vector<int> frontier_;
   std::vector<int> seed_nodes_;  // a seed's sample, -1 when it lies outside the window
 };
 
 }  // namespace
-
-SampleGrid::SampleGrid(const RectWindow& rect_window, int sample_step)
-    : window(rect_window),
-      step(sample_step),
-      width((rect_window.width + sample_step - 1) / sample_step),
-      height((rect_window.height + sample_step - 1) / sample_step) {}
-
-bool Gate::Admits(float gate, float disparity) {
-  if (gate == kOpen) return true;
-  if (gate == kClosed) return false;
-  return std::abs(disparity - gate) > 4 + 0.04f * gate;
-}
 
 PartialDisparity Propagate(const RectPicture& picture1, const RectPicture& picture2,
                            const Gate& gate, const std::vector<Seed>& seeds,

@@ -11,6 +11,7 @@
 #include "colmap_seapoint/base/camera.h"
 #include "colmap_seapoint/base/image.h"
 #include "colmap_seapoint/base/rigid3.h"
+#include "densify/match/sample_grid.h"
 
 namespace colmap_seapoint {
 
@@ -37,11 +38,6 @@ struct PairGeometry {
 // near the picture): no rectification exists.
 std::optional<PairGeometry> MakePairGeometry(const Camera& camera1, const Rigid3d& cam1_from_world,
                                              const Camera& camera2, const Rigid3d& cam2_from_world);
-
-// A window of the rect plane: pixel (i, j) of the window is centred at rect (x0 + i + 0.5, ...).
-struct RectWindow {
-  int x0 = 0, y0 = 0, width = 0, height = 0;
-};
 
 // The smallest window that holds the picture's part of the rect plane, up to 72 degrees aside.
 RectWindow WindowOfPicture(const PairGeometry& geometry, bool second);

@@ -3,7 +3,8 @@
 // of a depth edge by that side's surface.
 #pragma once
 
-#include "densify/match/propagation.h"
+#include "densify/match/rectification.h"
+#include "densify/match/sample_grid.h"
 
 namespace colmap_seapoint {
 
@@ -17,10 +18,10 @@ struct RefinementOptions {
 // propagation could not match.
 inline constexpr int kMaxRefinementSpread = 4;
 
-// `nodes`: Propagate's. Samples lie in the
-// surroundings of matched nodes (kMaxRefinementSpread), never at closed ones. Tiles of 64 x 32
-// pixels are independent: the same result for any number of threads. Cost: about 10 ns a pixel in
-// them, whatever the window; memory: the result's.
+// `nodes` come from Propagate. Samples lie in the surroundings of matched nodes
+// (kMaxRefinementSpread), never at closed ones. Tiles of 64 x 32 pixels are independent: the same
+// result for any number of threads. Cost: about 10 ns a pixel of the tiles that hold nodes,
+// whatever the window; memory: the result's.
 PartialDisparity Refine(const RectPicture& picture1, const RectPicture& picture2, const Gate& gate,
                         const PartialDisparity& nodes, const RefinementOptions& options,
                         int num_threads);

@@ -2,9 +2,10 @@
 // averages out, the slope gives the normal, and what nothing around supports is found out.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
-#include "densify/match/propagation.h"
+#include "densify/match/sample_grid.h"
 
 namespace colmap_seapoint {
 

@@ -5,13 +5,14 @@
 #include <functional>
 
 #include "densify/kernels/tile_kernels.h"
-#include "densify/match/propagation.h"
+#include "densify/match/sample_grid.h"
 
 namespace colmap_seapoint {
 
 inline constexpr float kMaxLayerSlope = 1.2f;  // pixels of disparity a pixel, on one surface
 
-// Marks of a tile's nodes and of one ring around, [row][column] as in tile::Prediction.
+// One mark for each of a tile's nodes and of the ring of nodes around them, [row][column] as in
+// tile::Prediction.
 using NodeMarks = std::array<std::array<bool, tile::kNodesX>, tile::kNodesY>;
 
 struct SurfaceLayer {

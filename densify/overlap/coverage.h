@@ -8,7 +8,7 @@
 
 #include "colmap_seapoint/base/camera.h"
 #include "colmap_seapoint/base/rigid3.h"
-#include "densify/overlap/cell_grid.h"
+#include "densify/match/cell_grid.h"
 #include "densify/overlap/packed_footprint.h"
 
 namespace colmap_seapoint {

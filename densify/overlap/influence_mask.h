@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "colmap_seapoint/base/features.h"
-#include "densify/overlap/cell_grid.h"
+#include "densify/match/cell_grid.h"
 
 namespace colmap_seapoint {
 

@@ -10,7 +10,7 @@ namespace {
 constexpr float kUnitsPerPatch = 32;  // along the side of the smallest one
 constexpr float kMaxUnits = 1 << 22;  // of the radius: as finely as its floats
 
-// Of the numbers of a footprint; world units.
+// The unit that the numbers of a footprint are counted in; world units.
 float UnitOf(const CloudFootprint& footprint) {
   float smallest = footprint.radius;
   for (const SurfacePatch& patch : footprint.patches) smallest = std::min(smallest, patch.size);

@@ -6,23 +6,11 @@
 #include <vector>
 
 #include "colmap_seapoint/base/sparse_model.h"
-#include "densify/densify_pair.h"
+#include "densify/match/cell_grid.h"
+#include "densify/match/view.h"
 #include "densify/overlap/coverage.h"
 
 namespace colmap_seapoint {
-
-// For every position, the positions that share triangulated points with it, most shared first, ties
-// by position; at most 12. O(track elements squared per point).
-std::vector<std::vector<int>> CovisiblePictures(const SparseModel& model,
-                                                const std::vector<int>& order);
-
-// Median angle between the rays of the points that both pictures see, degrees; 0 when they share
-// none.
-double MedianParallaxDeg(const SparseModel& model, const PosedImage& image1,
-                         const PosedImage& image2);
-
-// Share of the points that a picture sees which project into another; 0 when it sees none.
-double SharedShare(const SparseModel& model, const PosedImage& image, const View& other);
 
 struct CompletionCandidate {
   int position;
@@ -49,7 +37,7 @@ struct CompletionView {
   std::vector<uint8_t> tries;           // how often its surface was tried in vain, 0 .. 2
 };
 
-// Without the predicted ranges.
+// All of it but the predicted ranges.
 CompletionView LookAt(const View& view, const CellGrid& cells,
                       const std::vector<PackedFootprint>& footprints, const GivenUp& given_up);
 

@@ -2,13 +2,47 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "colmap_seapoint/base/features.h"
+#include "colmap_seapoint/base/sparse_model.h"
+#include "densify/sequence/picture_cache.h"
+#include "densify/sequence/track.h"
 
 namespace colmap_seapoint {
 
-// Positions below are in the sequence (the pictures in the order of their names).
+// Positions below are those of the track.
+
+struct SecondRules {
+  int min_num_seeds;       // matches that a pair needs
+  double min_mean_motion;  // share of the picture's longer side (paper 2.6)
+  // Ours: of the pictures that see most of what `first` does, the one with the widest baseline goes
+  // first. That is worth it where a completion pass comes back for what it does not see.
+  bool prefer_wide;
+};
+
+struct SecondChoice {
+  int position = -1;     // -1: there is none
+  std::string why_none;  // or empty
+};
+
+// The picture that completes the pair of `first`: its simultaneous right one where there is one
+// that can be read (paper 4); else, of the next four on the track, the first one with enough
+// matches, enough motion (paper 2.6) and a parallax of a degree (ours: motion can be mere
+// rotation).
+SecondChoice SelectSecond(const SparseModel& model, const Track& track, int first,
+                          const SecondRules& rules, PictureCache* pictures);
+
+struct NextChoice {
+  int position = 0;  // where the next pair starts; Track::CanStartPair tells whether it can
+  std::vector<int> passed_over;  // pictures that overlap too much with the pair before
+};
+
+// Where the pair after (first, second) starts: SelectNextFirst or, for a simultaneous pair,
+// SelectNextStereoFirst.
+NextChoice SelectNext(const Track& track, int first, int second, double max_overlap,
+                      const std::function<double(int)>& overlap);
 
 // Whether a pair's matches tell two viewpoints apart (paper 2.6): the mean norm of the vectors, in
 // shares of the picture's longer side.

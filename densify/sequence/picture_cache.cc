@@ -6,7 +6,7 @@
 
 namespace colmap_seapoint {
 
-// The new one, and those still being read, count as much as the largest that is there.
+// The new picture, and those still being read, count as much as the largest that is there.
 void PictureCache::MakeRoom() {
   size_t largest = 0;
   for (const Entry& entry : pictures_) largest = std::max<size_t>(largest, *entry.num_bytes);
@@ -35,7 +35,7 @@ PictureCache::PendingPicture PictureCache::Start(int image_idx) {
     *num_bytes = picture->NumBytes();
     return picture;
   };
-  PendingPicture pending = std::async(std::launch::async, read).share();
+  PendingPicture pending = std::async(read).share();
   pictures_.push_back({image_idx, num_bytes, pending});
   return pending;
 }

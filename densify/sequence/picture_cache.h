@@ -12,7 +12,7 @@
 
 #include "colmap_seapoint/base/features.h"
 #include "colmap_seapoint/base/picture.h"
-#include "densify/densify_sequence.h"
+#include "densify/sequence/picture_source.h"
 
 namespace colmap_seapoint {
 
@@ -20,15 +20,16 @@ class PictureCache {
  public:
   explicit PictureCache(PictureSource* source) : source_(source) {}
 
-  // nullptr when the picture cannot be read: the reason goes to LeftOut(), once. With colour,
-  // though the second picture of a pair needs none: most are the first one of another pair too.
+  // nullptr when the picture cannot be read: the reason goes to LeftOut(), once. Pictures have
+  // their colours although the second one of a pair needs none: most are the first one of another
+  // pair.
   std::shared_ptr<const Picture> Get(int image_idx);
   // Empty features when they cannot be had, and the reason likewise. Where none are stored, they
   // are found in the picture, which is decoded once for that and for densification.
   std::shared_ptr<const Features> GetSeaPoints(int image_idx);
   // idx1 in image_idx1's SeaPoints, idx2 in image_idx2's.
   std::shared_ptr<const FeatureMatches> GetMatches(int image_idx1, int image_idx2);
-  // Starts reading in the background, if it is not there or under way.
+  // Starts reading in the background, unless the picture is there or on its way.
   void Prefetch(int image_idx) { Start(image_idx); }
 
   const std::vector<LeftOutPicture>& LeftOut() const { return left_out_; }
@@ -47,7 +48,8 @@ class PictureCache {
     PendingPicture pending;
   };
 
-  // For one more picture. What is kept depends on what is there already, results do not.
+  // Drops pictures until there is room for one more. What is kept depends on how far reading has
+  // come; results do not.
   void MakeRoom();
   PendingPicture Start(int image_idx);
   Features ObtainSeaPoints(int image_idx);

@@ -1,13 +1,13 @@
-// colmap_seapoint::densify from outside: a COLMAP model in text form and its pictures -> a cloud.
+// colmap_seapoint::densify from outside: a COLMAP model and its pictures, from wherever -> a cloud.
 //   densify_model IMAGE_FOLDER MODEL_FOLDER CLOUD.ply
-// (colmap model_converter --output_type TXT makes a text model of any other.)
+#include <array>
 #include <exception>
-#include <fstream>
 #include <iostream>
 #include <opencv2/imgcodecs.hpp>
-#include <sstream>
 #include <stdexcept>
 
+#include "colmap_seapoint/io/cloud/ply.h"
+#include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "densify/densify_sequence.h"
 #include "feature/extract_features.h"
 #include "feature/match_features.h"
@@ -50,87 +50,23 @@ class PictureFolder : public cs::PictureSource {
   cs::SeaPointMatchingOptions matching_;
 };
 
-// Every line of `path` that is no comment.
-std::vector<std::string> Lines(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw std::runtime_error(path + ": cannot be read");
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(file, line);) {
-    if (line.empty() || line[0] != '#') lines.push_back(line);
-  }
-  return lines;
-}
-
-cs::SparseModel ReadTextModel(const std::string& folder) {
-  cs::SparseModel model;
-  for (const std::string& line : Lines(folder + "/cameras.txt")) {
-    std::istringstream words(line);
-    cs::Camera camera;
-    std::string name;
-    words >> camera.camera_id >> name >> camera.width >> camera.height;
-    const cs::CameraModelInfo* info = cs::FindCameraModel(name);
-    if (info == nullptr) throw std::runtime_error("unknown camera model " + name);
-    camera.model = info->model;
-    for (double param; words >> param;) camera.params.push_back(param);
-    model.cameras[camera.camera_id] = camera;
-  }
-  const std::vector<std::string> images = Lines(folder + "/images.txt");
-  for (size_t i = 0; i < images.size(); i += 2) {
-    std::istringstream words(images[i]);
-    cs::PosedImage image;
-    Eigen::Quaterniond& q = image.cam_from_world.rotation;
-    Eigen::Vector3d& t = image.cam_from_world.translation;
-    words >> image.image_id >> q.w() >> q.x() >> q.y() >> q.z() >> t.x() >> t.y() >> t.z() >>
-        image.camera_id >> std::ws;
-    std::getline(words, image.name);
-    std::istringstream points(i + 1 < images.size() ? images[i + 1] : "");
-    Eigen::Vector2d point;
-    for (long long id; points >> point.x() >> point.y() >> id;) {
-      image.points2D.push_back(point);
-      image.point3D_ids.push_back(id < 0 ? cs::kNoPoint3D : static_cast<uint64_t>(id));
-    }
-    model.images.push_back(image);
-  }
-  for (const std::string& line : Lines(folder + "/points3D.txt")) {
-    std::istringstream words(line);
-    uint64_t id = 0;
-    cs::SparsePoint point;
-    int red = 0, green = 0, blue = 0;
-    words >> id >> point.xyz.x() >> point.xyz.y() >> point.xyz.z() >> red >> green >> blue >>
-        point.error;
-    for (cs::SparsePoint::TrackElement e; words >> e.image_id >> e.point2D_idx;) {
-      point.track.push_back(e);
-    }
-    model.points3D[id] = point;
-  }
-  return model;
-}
-
-void WritePly(const std::string& path, const std::vector<cs::DensePoint>& points) {
-  std::ofstream file(path);
-  file << "ply\nformat ascii 1.0\nelement vertex " << points.size()
-       << "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
-          "property uchar green\nproperty uchar blue\nend_header\n";
-  for (const cs::DensePoint& point : points) {
-    file << point.xyz.transpose() << " " << int{point.rgb[0]} << " " << int{point.rgb[1]} << " "
-         << int{point.rgb[2]} << "\n";
-  }
-  if (!file.flush()) throw std::runtime_error(path + ": cannot be written");
-}
-
 int Run(const std::string& images, const std::string& folder, const std::string& output) {
-  const cs::SparseModel model = ReadTextModel(folder);
+  const cs::SparseModel model = cs::ReadSparseModel(folder, cs::ModelContent::kPosesAndPoints);
   PictureFolder pictures(images, model);
-  std::vector<cs::DensePoint> points;
+  cs::CloudWriter cloud(output);
   cs::SequenceCallbacks callbacks;
   callbacks.sink = [&](const cs::PartialCloud& part) {
-    points.insert(points.end(), part.points.begin(), part.points.end());
+    const std::array<uint32_t, 2> seen_by = {static_cast<uint32_t>(part.image_idx1),
+                                             static_cast<uint32_t>(part.image_idx2)};
+    for (const cs::DensePoint& point : part.points) {
+      cloud.Add({point.xyz, point.normal, point.rgb}, seen_by.data(), 2);
+    }
   };
   const int num_threads = 2;
   cs::DensifySequence(model, &pictures, cs::PartialDensificationOptions(), num_threads, callbacks);
-  WritePly(output, points);
-  std::cout << points.size() << " points of " << model.images.size() << " pictures\n";
-  return points.empty() ? 1 : 0;
+  cloud.Finish();
+  std::cout << cloud.NumPoints() << " points of " << model.images.size() << " pictures\n";
+  return cloud.NumPoints() == 0 ? 1 : 0;
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 namespace colmap_seapoint {
 namespace {
 
-// What random numbers are for.
+// Keeps the random numbers of different purposes apart.
 enum Purpose : int64_t { kMarks = 1, kPositions = 2, kOutliers = 3, kDirections = 4 };
 
 // Standard deviation of Bell() is 1 within 0.1 %.

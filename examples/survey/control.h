@@ -1,5 +1,5 @@
-// What a diver and a navigation log would bring home from a demo survey: a scale bar marked in the
-// pictures, and positions of the cameras. With noise, from a seed.
+// What a diver and a navigation log would bring home from a demo survey: a scale bar that is marked
+// in the pictures, and noisy positions of the cameras. All noise follows from the seed.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ struct ControlOptions {
 // "" or the whole sentence: option, value, rule.
 std::string CheckControlOptions(const ControlOptions& options);
 
-// As model_scaler reads them.
+// The three tables in the form that model_scaler reads.
 struct ControlTables {
   std::string bars;       // one bar, with its exact length
   std::string targets;    // its two ends, in every picture that sees them

@@ -56,7 +56,7 @@ nlohmann::ordered_json OptionsJson(const SurveyOptions& o) {
   return json;
 }
 
-// As --ImageReader.camera_params takes them: for runs with a calibrated camera.
+// The lens in the form that --ImageReader.camera_params takes, for runs with a calibrated camera.
 std::string ParamsText(const SparseModel& model) {
   std::string text;
   for (double param : model.cameras.at(1).params) {

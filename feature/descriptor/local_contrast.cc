@@ -33,14 +33,14 @@ Image<uint16_t> Smooth(const GrayImage& picture) {
   return smooth;
 }
 
-// The window of `length` places that lies within 0..size-1 and nearest to `center`: its first
-// place.
+// The first place of the window of `length` places within 0..size-1 whose middle is nearest to
+// `center`.
 int WindowBegin(int center, int length, int size) {
   return std::clamp(center - length / 2, 0, size - length);
 }
 
-// Sums of the box around every place of a row, the column sums being those of the box's rows: at
-// most 61 * 61 * 3891, which a float holds exactly.
+// The sums of the box around every place of a row, from the column sums of the box's rows. They are
+// at most 61 * 61 * 3891, which a float holds exactly.
 void BoxSums(const std::vector<uint32_t>& column_sums, int length, uint32_t* sums) {
   const int width = static_cast<int>(column_sums.size());
   const int first_move = length / 2 + 1, num_moves = width - length;

@@ -13,9 +13,9 @@ namespace {
 
 constexpr int kCentroidRadius = 15;
 
-// Half width of the disc's rows. Rounded down: exactly the pixels with x^2 + y^2 <= radius^2, as
-// wide as high. (Rounded to nearest, columns are cut otherwise than rows, and quarter turns of a
-// picture turn the orientation by up to 7 degrees more or less.)
+// The half widths of the disc's rows. They are rounded down, which gives exactly the pixels with
+// x^2 + y^2 <= radius^2. Rounded to nearest, columns are cut otherwise than rows, and quarter turns
+// of a picture turn the orientation by up to 7 degrees more or less.
 std::vector<int> DiscHalfWidths() {
   std::vector<int> half_widths;
   for (int y = 0; y <= kCentroidRadius; ++y) {

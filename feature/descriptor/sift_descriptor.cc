@@ -12,11 +12,11 @@ namespace colmap_seapoint {
 
 namespace {
 
-// At half of the described size.
-constexpr double kWindow = 28;      // pixels: the width of the 4 x 4 cells
+// All in pixels of half the described size.
+constexpr double kWindow = 28;      // the width of the 4 x 4 cells
 constexpr double kBlurSigma = 1.6;  // OpenCV's own; 0.7 of the window's twelfth
 constexpr double kNoiseSigma = 1;   // before the box, so that the 8 bits hold more than noise
-constexpr int kBox = 13;            // pixels: of the local mean
+constexpr int kBox = 13;            // of the local mean
 
 constexpr size_t kNumCells = 4;  // a side
 constexpr size_t kNumDirections = 8;
@@ -41,7 +41,7 @@ cv::Mat LocalDetail(const GrayImage& picture, int reduction) {
   return levels;
 }
 
-// As COLMAP: L1-normalised, square roots, times 512, rounded, at most 255.
+// The same as COLMAP: L1-normalised, square roots, times 512, rounded, at most 255.
 SiftDescriptor ToRootSift(const float* values) {
   float sum = 0;
   SiftDescriptor descriptor{};

@@ -1,11 +1,12 @@
 // The more robust descriptor (paper 4: "the SIFT descriptor"): upright RootSIFT around SeaPoints,
 // by OpenCV, in the form in which COLMAP stores its own.
 //
-// What it is worth beside today's rBRIEF (verified matches, guided ones included): on neighbouring
-// pictures 0 to 2 % more, in any water and light tried; 6 % more on every second picture of a ROV
-// set, 2 % between its tracks; 3 to 7 times the CPU time of extraction. Ours, each chosen by the
-// share of SeaPoints verified on neighbouring pictures (an AUV strip / a ROV set with its moving
-// lamp / a turbid demo survey; one sitting, rBRIEF 0.47 / 0.40 / 0.42):
+// Beside today's rBRIEF it gives 0 to 2 % more verified matches (guided ones included) on
+// neighbouring pictures, in any water and light tried, 6 % more on every second picture of a ROV
+// set and 2 % more between its tracks, for 3 to 7 times the CPU time of extraction. What follows is
+// ours. Each choice was made by the share of SeaPoints verified on neighbouring pictures of an AUV
+// strip / a ROV set with its moving lamp / a turbid demo survey, in one sitting, in which rBRIEF
+// had 0.47 / 0.40 / 0.42:
 // - Upright, not turned by each point's orientation: 0.48 / 0.42 / 0.45 against 0.33 / 0.28 / 0.30
 //   by the dominant gradient and 0.35 / 0.27 / 0.24 by the intensity centroid. How far two pictures
 //   are turned against each other is voted by rBRIEF (picture_turn.h), and an upright descriptor is
@@ -22,18 +23,18 @@
 
 namespace colmap_seapoint {
 
-// Upright descriptors of `points`, in the frame of `picture`, at half its described size (see
-// DescriptionReduction in rbrief_descriptor.h), around the nearest whole pixel of that size (OpenCV
-// rounds): four by four cells of eight directions; the L1 norm divided out, square roots, times
-// 512, as COLMAP does it. Samples beyond the picture's edge count nothing. Where there is no
+// Returns upright descriptors of `points`, in the frame of `picture`, at half its described size
+// (see DescriptionReduction in rbrief_descriptor.h), around the nearest whole pixel of that size
+// (OpenCV rounds): four by four cells of eight directions; the L1 norm divided out, square roots,
+// times 512, as COLMAP does it. Samples beyond the picture's edge count nothing. Where there is no
 // texture at all, zeros. The same picture gives the same descriptors for any number of threads, and
 // nearly the same on any machine (OpenCV computes in floating point). Cost: about 50 CPU ms for
 // 2500 points of a picture of 1.4 megapixels.
 std::vector<SiftDescriptor> DescribeBySift(const GrayImage& picture,
                                            const std::vector<SeaPoint>& points);
 
-// What `descriptor` becomes when its picture is turned by `quarters` quarter turns from x towards y
-// (any integer): nothing is lost.
+// Returns what `descriptor` becomes when its picture is turned by `quarters` quarter turns from x
+// towards y (any integer). Nothing is lost.
 SiftDescriptor TurnSiftDescriptor(const SiftDescriptor& descriptor, int quarters);
 
 }  // namespace colmap_seapoint

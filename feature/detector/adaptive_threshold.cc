@@ -1,5 +1,6 @@
 #include "feature/detector/adaptive_threshold.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -20,54 +21,55 @@ struct Bin {
   float low = 0, high = 0;  // extremes of the measures in it
 };
 
+using Histogram = std::array<Bin, kNumBins>;
+
+Histogram Explore(const std::vector<float>& measures, float low, float high) {
+  Histogram histogram{};
+  for (const float measure : measures) {
+    if (measure < low || measure > high) continue;
+    Bin& bin = histogram[static_cast<size_t>(BinOf(measure, low, high))];
+    bin.low = bin.count == 0 ? measure : std::min(bin.low, measure);
+    bin.high = bin.count == 0 ? measure : std::max(bin.high, measure);
+    ++bin.count;
+  }
+  return histogram;
+}
+
+// Walks down from the top bin and takes whole bins into `result` until min_count is reached.
+// Returns the bin that would take the count from below the minimum to beyond max_count, or nullptr.
+const Bin* WalkDown(const Histogram& histogram, int min_count, int max_count,
+                    AdaptiveThreshold* result) {
+  for (auto bin = histogram.rbegin(); bin != histogram.rend(); ++bin) {
+    if (bin->count == 0) continue;
+    if (result->count + bin->count > max_count) return &*bin;
+    result->count += bin->count;
+    result->threshold = bin->low;
+    if (result->count >= min_count) return nullptr;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 AdaptiveThreshold FindAdaptiveThreshold(const std::vector<float>& measures, int min_count,
                                         int max_count) {
   AdaptiveThreshold result;
   if (measures.empty()) return result;
-
-  float low = 0.0f, high = 255.0f;  // range of the histogram under exploration
-  int count_above = 0;              // measures above that range: all of them are kept
-  float threshold_above = 0.0f;     // the smallest of them
+  Bin range = {0, 0.0f, 255.0f};  // under exploration; all measures above it are kept
   while (true) {
-    std::array<Bin, kNumBins> histogram{};
-    for (const float measure : measures) {
-      if (measure < low || measure > high) continue;
-      Bin& bin = histogram[static_cast<size_t>(BinOf(measure, low, high))];
-      bin.low = bin.count == 0 ? measure : std::min(bin.low, measure);
-      bin.high = bin.count == 0 ? measure : std::max(bin.high, measure);
-      ++bin.count;
-    }
+    const Histogram histogram = Explore(measures, range.low, range.high);
     ++result.num_rounds;
-
-    int bin_idx = kNumBins - 1;
-    for (; bin_idx >= 0; --bin_idx) {
-      const Bin& bin = histogram[static_cast<size_t>(bin_idx)];
-      if (bin.count == 0) continue;
-      if (count_above + bin.count > max_count) break;
-      count_above += bin.count;
-      threshold_above = bin.low;
-      if (count_above >= min_count) break;
-    }
-    result.threshold = threshold_above;
-    result.count = count_above;
-    if (count_above >= min_count) {
-      result.status = ThresholdStatus::kConverged;
+    const Bin* crowded = WalkDown(histogram, min_count, max_count, &result);
+    if (crowded == nullptr) {
+      result.status =
+          result.count >= min_count ? ThresholdStatus::kConverged : ThresholdStatus::kTooFew;
       return result;
     }
-    if (bin_idx < 0) {
-      result.status = ThresholdStatus::kTooFew;
-      return result;
-    }
-    // This bin takes the sum from below the minimum to beyond the maximum: explode it.
-    const Bin& crowded = histogram[static_cast<size_t>(bin_idx)];
-    if (!(crowded.low < crowded.high)) {
+    if (!(crowded->low < crowded->high)) {
       result.status = ThresholdStatus::kTied;
       return result;
     }
-    low = crowded.low;
-    high = crowded.high;
+    range = *crowded;  // exploded into a histogram of its own
   }
 }
 

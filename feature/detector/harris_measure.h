@@ -12,11 +12,12 @@ struct HarrisOptions {
   double k;                // measure = det - k * trace^2
 };
 
-// How far from the border the measure needs pixels; within it the map is 0.
+// Returns the width of the border, in pixels, in which the measure would need pixels beyond the
+// edge: the map is 0 there.
 int HarrisBorder(const HarrisOptions& options);
 
-// Grey levels -> measure, same size. Gradients and products are integers (exact, whatever the
-// order of summation); only the last step is in float.
+// Returns the measures of all pixels. Gradients and products are whole numbers, exact whatever the
+// order of summation; only the last step is in float.
 FloatImage HarrisMeasure(const GrayImage& picture, const HarrisOptions& options);
 
 }  // namespace colmap_seapoint

@@ -49,71 +49,79 @@ int HarrisBorder(const HarrisOptions& options) {
          options.window_size / 2;
 }
 
-HarrisRows::HarrisRows(const GrayImage& picture, const HarrisOptions& options, int first_row)
+SmoothRows::SmoothRows(const GrayImage& picture, double sigma, int first_y, int num_kept)
     : picture_(picture),
-      taps_(GaussianTaps(options.smoothing_sigma)),
+      taps_(GaussianTaps(sigma)),
       tap_pairs_(TapPairs(taps_)),
-      smoothing_radius_(static_cast<int>(taps_.size()) / 2),
-      box_radius_(options.window_size / 2),
-      border_(HarrisBorder(options)),
-      k_(static_cast<float>(options.k)),
-      first_smooth_y_(first_row - box_radius_ - 1),
-      first_gradient_y_(first_row - box_radius_),
-      next_smooth_y_(first_smooth_y_),
-      next_gradient_y_(first_gradient_y_),
-      next_y_(first_row),
+      first_y_(first_y),
+      num_kept_(num_kept),
+      next_y_(first_y),
       sources_(taps_.size()),
       down_(1, Size(picture.width)),
-      smooth_(Size(options.window_size) + 3, Size(picture.width)),
+      kept_(Size(num_kept), Size(picture.width)) {}
+
+int16_t* SmoothRows::Kept(int y) { return kept_.Row(Size((y - first_y_) % num_kept_)); }
+
+const int16_t* SmoothRows::Row(int y) {
+  while (next_y_ <= y) Smooth(next_y_++);
+  SEAPOINT_CHECK(y >= first_y_ && y >= next_y_ - num_kept_);
+  return Kept(y);
+}
+
+void SmoothRows::Smooth(int y) {
+  const int num_taps = static_cast<int>(taps_.size());
+  for (int t = 0; t < num_taps; ++t) sources_[Size(t)] = picture_.Row(y + t - Radius());
+  harris::SmoothDown(sources_.data(), taps_.data(), num_taps, Size(picture_.width), down_.Row(0));
+  harris::SmoothAcross(down_.Row(0), tap_pairs_.data(), tap_pairs_.size(), Size(Width()), Kept(y));
+}
+
+// The window is window_size rows of gradients; to take one in and let one go, the rows above and
+// below them are needed as well.
+GradientSums::GradientSums(const GrayImage& picture, const HarrisOptions& options, int first_row)
+    : radius_(options.window_size / 2),
+      first_y_(first_row - radius_),
+      next_y_(first_y_),
+      smooth_(picture, options.smoothing_sigma, first_y_ - 1, options.window_size + 3),
       no_row_(1, Size(picture.width)),
-      column_sums_(6, Size(picture.width) / 2 + 1) {
+      sums_(6, Size(picture.width) / 2 + 1) {}
+
+void GradientSums::MoveTo(int y) {
+  while (next_y_ <= y + radius_) TakeIn(next_y_++);
+}
+
+void GradientSums::TakeIn(int y) {
+  const int leaving_y = y - 2 * radius_ - 1;
+  const int16_t* const none = no_row_.Row(0);
+  const int16_t* entering[3] = {};
+  const int16_t* leaving[3] = {none, none, none};
+  for (int v = 2; v >= 0; --v) {  // the lowest row first: it may have to be worked out
+    entering[v] = smooth_.Row(y + v - 1);
+    if (leaving_y >= first_y_) leaving[v] = smooth_.Row(leaving_y + v - 1);
+  }
+  harris::SlideSums(entering, leaving, Size(smooth_.Width() - 2), sums_.Row(0), sums_.stride());
+}
+
+HarrisRows::HarrisRows(const GrayImage& picture, const HarrisOptions& options, int first_row)
+    : width_(picture.width),
+      height_(picture.height),
+      border_(HarrisBorder(options)),
+      radius_(options.window_size / 2),
+      k_(static_cast<float>(options.k)),
+      next_y_(first_row),
+      sums_(picture, options, first_row) {
   SEAPOINT_CHECK(options.window_size % 2 == 1 && options.window_size <= 11);
-  SEAPOINT_CHECK(picture.width > 2 * border_ && picture.height > 2 * border_);
-  SEAPOINT_CHECK(first_row >= border_ && first_row < picture.height - border_);
+  SEAPOINT_CHECK(width_ > 2 * border_ && height_ > 2 * border_);
+  SEAPOINT_CHECK(first_row >= border_ && first_row < height_ - border_);
 }
 
 void HarrisRows::Next(float* row) {
-  SEAPOINT_CHECK(next_y_ < picture_.height - border_);
-  while (next_gradient_y_ <= next_y_ + box_radius_) {
-    while (next_smooth_y_ <= next_gradient_y_ + 1) Smooth();
-    Accumulate();
-  }
+  SEAPOINT_CHECK(next_y_ < height_ - border_);
+  sums_.MoveTo(next_y_++);
   float extremes[2] = {lowest_, highest_};
-  harris::MeasureRow(column_sums_.Row(0), column_sums_.stride(), box_radius_,
-                     Size(picture_.width - 2 * border_), k_, row + border_, extremes);
+  harris::MeasureRow(sums_.Sums(), sums_.Stride(), radius_, Size(width_ - 2 * border_), k_,
+                     row + border_, extremes);
   lowest_ = extremes[0];
   highest_ = extremes[1];
-  ++next_y_;
-}
-
-const int16_t* HarrisRows::SmoothRow(int y) const {
-  const size_t ring_size = Size(2 * box_radius_ + 4);
-  return y < first_smooth_y_ ? no_row_.Row(0) : smooth_.Row(Size(y - first_smooth_y_) % ring_size);
-}
-
-void HarrisRows::Smooth() {
-  const int y = next_smooth_y_++;
-  const int num_taps = static_cast<int>(taps_.size());
-  for (int t = 0; t < num_taps; ++t) {
-    sources_[Size(t)] = picture_.Row(y + t - smoothing_radius_);
-  }
-  harris::SmoothDown(sources_.data(), taps_.data(), num_taps, Size(picture_.width), down_.Row(0));
-  harris::SmoothAcross(down_.Row(0), tap_pairs_.data(), tap_pairs_.size(),
-                       Size(picture_.width - 2 * smoothing_radius_),
-                       const_cast<int16_t*>(SmoothRow(y)));
-}
-
-void HarrisRows::Accumulate() {
-  const int y = next_gradient_y_++;
-  const int16_t* const entering[3] = {SmoothRow(y - 1), SmoothRow(y), SmoothRow(y + 1)};
-  const int leaving_y = y - 2 * box_radius_ - 1;
-  const int16_t* const none = no_row_.Row(0);
-  const int16_t* leaving[3] = {none, none, none};
-  if (leaving_y >= first_gradient_y_) {
-    for (int v = 0; v < 3; ++v) leaving[v] = SmoothRow(leaving_y + v - 1);
-  }
-  harris::SlideSums(entering, leaving, Size(picture_.width - 2 * smoothing_radius_ - 2),
-                    column_sums_.Row(0), column_sums_.stride());
 }
 
 }  // namespace colmap_seapoint

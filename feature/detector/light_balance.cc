@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kCellsAcross = 28;
 
-// Means of the roots of the measures, by cell.
+// The mean of the roots of the measures, by cell.
 class UsualRoots {
  public:
   UsualRoots(const LocalMaxima& found, int width, int height)
@@ -43,7 +43,7 @@ class UsualRoots {
  private:
   size_t Index(int i, int j) const { return static_cast<size_t>(j * nx_ + i); }
 
-  // 1 2 1 in both directions; the mean of all where no neighbour has a maximum.
+  // Weights 1 2 1 in both directions; the mean of all where no neighbour has a maximum.
   void Smooth(const std::vector<double>& sums, const std::vector<double>& counts) {
     roots_.assign(sums.size(), mean_);
     for (int j = 0; j < ny_; ++j) {

@@ -19,13 +19,13 @@ struct LocalMaxima {
   float lowest = 0, highest = 0;     // extremes of the whole map
 };
 
-// Every pixel whose measure is above 0 (below it are edges, at it there is no texture) and the
-// greatest in its (2 radius + 1)^2 window, of equal ones the first in raster order; none nearer to
-// the picture's border than `border` (at least HarrisBorder() + 1), none where `mask` (empty, or of
-// the picture's size) is 0.
+// Finds every pixel whose measure is above 0 (below it are edges, and at 0 there is no texture) and
+// the greatest in its (2 radius + 1)^2 window, of equal ones the first in raster order. There is
+// none nearer to the picture's edge than `border` pixels (at least HarrisBorder() + 1), and none
+// where `mask` (empty, or of the picture's size) is 0.
 //
-// One pass over the picture: 2 radius + 1 rows of measures exist at once, no map. `num_threads`
-// share the picture in bands of rows; the result is the same for any number (-1: all cores).
+// One pass over the picture: 2 radius + 1 rows of measures exist at once, and no map. `num_threads`
+// (-1: all cores) share the picture in bands of rows; the result is the same for any number.
 LocalMaxima FindLocalMaxima(const GrayImage& picture, const GrayImage& mask,
                             const HarrisOptions& options, int radius, int border, int num_threads);
 

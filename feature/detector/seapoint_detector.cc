@@ -11,21 +11,17 @@ namespace colmap_seapoint {
 
 namespace {
 
-struct Corner {
-  const LocalMaximum* maximum;
-  float measure;  // remapped to 0..255
-};
-
-// Remaps to 0..255 by the extremes of the whole map (paper 2.3); balanced ones by their own
-// greatest.
-void Remap(const LocalMaxima& found, bool are_balanced, std::vector<float>* measures) {
-  if (measures->empty()) return;
+// Remaps the measures to 0..255 by the extremes of the whole map (paper 2.3); balanced ones, which
+// the map does not hold, by the greatest of their own.
+std::vector<float> Remap(std::vector<float> measures, const LocalMaxima& found, bool are_balanced) {
+  if (measures.empty()) return measures;
   const double highest =
-      are_balanced ? *std::max_element(measures->begin(), measures->end()) : found.highest;
+      are_balanced ? *std::max_element(measures.begin(), measures.end()) : found.highest;
   const double scale = 255.0 / (highest - found.lowest);
-  for (float& measure : *measures) {
+  for (float& measure : measures) {
     measure = static_cast<float>((static_cast<double>(measure) - found.lowest) * scale);
   }
+  return measures;
 }
 
 // Ours: the top of the quadratic through the 3 x 3 neighbourhood, at most half a pixel away.
@@ -48,8 +44,23 @@ SeaPoint FitSubPixel(const LocalMaximum& maximum) {
   return point;
 }
 
-// 0 = chosen so that the wanted number of points can spread over the whole picture (ours): a
-// tenth of their mean spacing, 2 pixels at 1.4 megapixels and 3000 points.
+// The local maxima that pass the threshold, strongest first. `measures`: one a maximum.
+std::vector<SeaPoint> PointsAbove(const AdaptiveThreshold& threshold, const LocalMaxima& found,
+                                  const std::vector<float>& measures) {
+  if (threshold.count == 0) return {};
+  std::vector<size_t> kept;
+  for (size_t i = 0; i < measures.size(); ++i) {
+    if (measures[i] >= threshold.threshold) kept.push_back(i);
+  }
+  std::stable_sort(kept.begin(), kept.end(),
+                   [&](size_t a, size_t b) { return measures[a] > measures[b]; });
+  std::vector<SeaPoint> points;
+  for (const size_t i : kept) points.push_back(FitSubPixel(found.maxima[i]));
+  return points;
+}
+
+// The radius 0 stands for a tenth of the mean spacing that the wanted number of points has when it
+// spreads over the whole picture (ours): 2 pixels at 1.4 megapixels and 3000 points.
 int NmsRadius(const GrayImage& picture, const SeaPointExtractionOptions& options) {
   if (options.nms_radius > 0) return options.nms_radius;
   const double area = static_cast<double>(picture.width) * picture.height;
@@ -95,33 +106,20 @@ std::string SeaPointExtractionOptions::Check() const {
   return "";
 }
 
-std::vector<SeaPoint> DetectSeaPoints(const GrayImage& picture, const GrayImage& mask,
-                                      const SeaPointExtractionOptions& options, int border,
-                                      DetectionSummary* summary, int num_threads) {
+Detection DetectSeaPoints(const GrayImage& picture, const GrayImage& mask,
+                          const SeaPointExtractionOptions& options, int border, int num_threads) {
   const HarrisOptions harris = {options.smoothing_sigma, options.window_size, options.harris_k};
-  border = std::max(border, HarrisBorder(harris) + 1);
   const LocalMaxima found =
-      FindLocalMaxima(picture, mask, harris, NmsRadius(picture, options), border, num_threads);
-  std::vector<float> measures =
-      BalanceLight(found, picture.width, picture.height, options.light_balance);
-  Remap(found, options.light_balance != 0, &measures);
+      FindLocalMaxima(picture, mask, harris, NmsRadius(picture, options),
+                      std::max(border, HarrisBorder(harris) + 1), num_threads);
+  const std::vector<float> measures =
+      Remap(BalanceLight(found, picture.width, picture.height, options.light_balance), found,
+            options.light_balance != 0);
   const AdaptiveThreshold threshold =
       FindAdaptiveThreshold(measures, options.min_num_features, options.max_num_features);
-  summary->status = threshold.status;
-  summary->threshold = threshold.threshold;
-  summary->num_rounds = threshold.num_rounds;
-  summary->num_local_maxima = static_cast<int>(measures.size());
-
-  std::vector<SeaPoint> points;
-  if (threshold.count == 0) return points;
-  std::vector<Corner> corners;
-  for (size_t i = 0; i < measures.size(); ++i) {
-    if (measures[i] >= threshold.threshold) corners.push_back({&found.maxima[i], measures[i]});
-  }
-  std::stable_sort(corners.begin(), corners.end(),
-                   [](const Corner& a, const Corner& b) { return a.measure > b.measure; });
-  for (const Corner& corner : corners) points.push_back(FitSubPixel(*corner.maximum));
-  return points;
+  return {PointsAbove(threshold, found, measures),
+          {threshold.status, threshold.threshold, threshold.num_rounds,
+           static_cast<int>(measures.size())}};
 }
 
 }  // namespace colmap_seapoint

@@ -14,35 +14,42 @@
 
 namespace colmap_seapoint {
 
+// Legal ranges are in Bind().
 struct SeaPointExtractionOptions {
-  int min_num_features = 2500;
+  int min_num_features = 2500;  // target interval, SeaPoints a picture (paper 2.3)
   int max_num_features = 3000;
-  int num_levels = 1;
-  double smoothing_sigma = 1.5;
-  int window_size = 7;
-  double harris_k = 0.04;
-  int nms_radius = 0;
-  std::string descriptor = "rbrief";  // or "sift"; see Features
-  double light_balance = 0.5;
+  int num_levels = 1;                 // of the pyramid; above 1: SI-SeaPoints (paper 4)
+  double smoothing_sigma = 1.5;       // Gaussian before the gradients, pixels; 0 = none (ours)
+  int window_size = 7;                // box over the gradient products, pixels, odd (ours)
+  double harris_k = 0.04;             // of det - k trace^2 (ours)
+  int nms_radius = 0;                 // pixels; 0 = a tenth of the points' spacing (ours)
+  std::string descriptor = "rbrief";  // or "sift" beside it (paper 2.4, 4)
+  double light_balance = 0.5;         // 0 = none (the paper) .. 1, see light_balance.h (ours)
 
   void Bind(OptionTable* table);
   // Rules between options: "" or the whole sentence. Ranges are the table's.
   std::string Check() const;
+  bool WantsSift() const { return descriptor == "sift"; }
 };
 
 struct DetectionSummary {
-  ThresholdStatus status = ThresholdStatus::kFlat;  // of the finest level
-  double threshold = 0;                             // on the 0..255 map of the finest level
-  int num_rounds = 0;                               // histograms explored on the finest level
-  int num_local_maxima = 0;  // candidates after non-maximum suppression, finest level
+  ThresholdStatus status = ThresholdStatus::kFlat;
+  double threshold = 0;      // on the 0..255 map
+  int num_rounds = 0;        // histograms explored
+  int num_local_maxima = 0;  // candidates after non-maximum suppression
 };
 
-// One pyramid level. Points in the coordinates of `picture` (scale 1, orientation 0), strongest
-// first, ties in raster order; none nearer to the border than `border` pixels, none where `mask`
-// (empty, or of the picture's size) is 0. num_threads (-1: all cores) share the picture in bands of
-// rows; the points are the same for any number. About 3 ms of CPU a megapixel with AVX2.
-std::vector<SeaPoint> DetectSeaPoints(const GrayImage& picture, const GrayImage& mask,
-                                      const SeaPointExtractionOptions& options, int border,
-                                      DetectionSummary* summary, int num_threads = 1);
+struct Detection {
+  std::vector<SeaPoint> points;  // strongest first, ties in raster order
+  DetectionSummary summary;
+};
+
+// Finds the SeaPoints of one pyramid level, in the coordinates of `picture` (scale 1, orientation
+// 0). There is none nearer to the edge than `border` pixels, and none where `mask` (empty, or of
+// the picture's size) is 0. num_threads (-1: all cores) share the picture in bands of rows; the
+// points are the same for any number. About 3 ms of CPU a megapixel with AVX2.
+Detection DetectSeaPoints(const GrayImage& picture, const GrayImage& mask,
+                          const SeaPointExtractionOptions& options, int border,
+                          int num_threads = 1);
 
 }  // namespace colmap_seapoint

@@ -14,7 +14,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR
 
-// For machines without vector code, and what the vector code must equal.
+// These run on machines without vector code, and the vector code must equal them.
 void SmoothDown(const uint8_t* const* rows, const uint16_t* taps, int num_taps, size_t width,
                 int16_t* out) {
   for (size_t x = 0; x < width; ++x) {
@@ -70,7 +70,7 @@ void MeasureRow(const int32_t* sums, size_t stride, int radius, size_t width, fl
 
 #else
 
-// num_taps rows of the picture -> their weighted sum. The taps are symmetric.
+// The weighted sum of num_taps rows of the picture. The taps are symmetric.
 template <class D>
 HWY_INLINE hn::Vec<D> WeightedSum(D d16, const uint8_t* const* rows, const uint16_t* taps,
                                   int num_taps, size_t x) {
@@ -129,7 +129,7 @@ void SmoothAcross(const int16_t* HWY_RESTRICT in, const int32_t* HWY_RESTRICT ta
   }
 }
 
-// Sum of the products of two neighbouring lanes each.
+// Sums of the products of two neighbouring lanes each.
 template <class D32, class V16>
 HWY_INLINE hn::Vec<D32> PairDot(D32 d32, V16 a, V16 b, hn::Vec<D32> plus) {
   auto rest = hn::Zero(d32);

@@ -14,7 +14,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR
 
-// For machines without vector code, and what the vector code must equal.
+// These run on machines without vector code, and the vector code must equal them.
 size_t FindPeaks(const float* above, const float* here, const float* below, int begin, int end,
                  int32_t* columns) {
   size_t num_columns = 0;
@@ -65,7 +65,7 @@ size_t FindPeaks(const float* above, const float* here, const float* below, int 
   return num_columns;
 }
 
-// Greatest of a row from `at` on; zeros fill up what is left of the last vector.
+// The greatest of a row from `at` on; zeros fill up what is left of the last vector.
 template <class D>
 HWY_INLINE hn::Vec<D> GreatestOf(D df, const float* at, size_t count, hn::Mask<D> last) {
   const size_t num_lanes = hn::Lanes(df);

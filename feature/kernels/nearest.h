@@ -1,5 +1,5 @@
-// What the two kernels of nearest neighbours share: between two sets of descriptors, the nearest of
-// every one in the other set, both ways in one pass.
+// The kernels that find nearest neighbours, for rBRIEF and for SIFT, share this: one pass over all
+// pairs of two sets finds the nearest of every descriptor in the other set, both ways.
 #pragma once
 
 #include <cstddef>
@@ -22,17 +22,17 @@ struct NearestNeighbors {
   std::vector<Nearest> of1, of2;  // by descriptor of the first set, of the second set
 };
 
-// Takes down the pairs that may matter; the vector code sorts out the many that do not.
+// Enters the pairs that may matter; the vector code sorts out the many that do not.
 class NearestRecord {
  public:
   NearestRecord(size_t count1, size_t count2, int cap, bool with_second)
       : with_second_(with_second), nearest_{{count1, {cap, cap, 0}}, {count2, {cap, cap, 0}}} {}
 
-  // A distance that is not below either of these changes nothing.
+  // A distance changes nothing unless it is below one of these.
   int Bound1(size_t i) const { return Bound(nearest_.of1[i]); }
   int Bound2(size_t j) const { return Bound(nearest_.of2[j]); }
 
-  // For every pair, in the order of i within each j and of j within each i.
+  // To be called once a pair, in ascending order of i for each j and of j for each i.
   void Enter(int distance, size_t i, size_t j) {
     Update(distance, static_cast<uint32_t>(j), &nearest_.of1[i]);
     Update(distance, static_cast<uint32_t>(i), &nearest_.of2[j]);
@@ -59,7 +59,7 @@ class NearestRecord {
   NearestNeighbors nearest_;
 };
 
-// For machines without vector code, and what the vector code must equal: every pair is entered.
+// Enters every pair. This runs on machines without vector code, and the vector code must equal it.
 template <typename AnyDescriptor, typename Distance>
 NearestNeighbors FindNearestOneByOne(const std::vector<AnyDescriptor>& descriptors1,
                                      const std::vector<AnyDescriptor>& descriptors2, int cap,

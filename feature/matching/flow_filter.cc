@@ -21,7 +21,8 @@ bool Agree(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const FlowFilterO
   return a.dot(b) >= min_cos * norm_a * norm_b;
 }
 
-// The middle of the rectangle that holds all points: of the picture, as far as they tell.
+// The middle of the rectangle that holds all points: as near to the middle of the picture as they
+// can tell.
 Eigen::Vector2f MiddleOf(const std::vector<SeaPoint>& points) {
   Eigen::Vector2f low(points[0].x, points[0].y), high = low;
   for (const SeaPoint& point : points) {
@@ -46,7 +47,7 @@ std::vector<Eigen::Vector2f> FlowVectors(const std::vector<SeaPoint>& points1,
   return vectors;
 }
 
-// Paper 2.4, Figure 8.
+// The vote of the neighbours (paper 2.4, Figure 8).
 FeatureMatches KeepVoted(const std::vector<SeaPoint>& points1, const std::vector<SeaPoint>& points2,
                          const FeatureMatches& matches, double turn,
                          const FlowFilterOptions& options) {
@@ -65,7 +66,7 @@ FeatureMatches KeepVoted(const std::vector<SeaPoint>& points1, const std::vector
   return kept;
 }
 
-// Ours.
+// The second look at what the vote has kept (ours).
 FeatureMatches DropSlipped(const std::vector<SeaPoint>& points1,
                            const std::vector<SeaPoint>& points2, const FeatureMatches& matches,
                            const FlowFilterOptions& options) {
@@ -83,24 +84,6 @@ FeatureMatches DropSlipped(const std::vector<SeaPoint>& points1,
 }
 
 }  // namespace
-
-void FlowFilterOptions::Bind(OptionTable* table) {
-  const std::string group = "SeaPointMatching.";
-  table->Add(group + "flow_num_neighbors", &num_neighbors,
-             "nearest matches that vote on a match's vector", "ours", 1, 200);
-  table->Add(group + "flow_min_votes", &min_votes, "votes that a match needs", "ours", 0, 200);
-  table->Add(group + "flow_max_angle_deg", &max_angle_deg,
-             "largest difference of direction that still votes, degrees", "ours", 0, 180);
-  table->Add(group + "flow_max_norm_difference", &max_norm_difference,
-             "largest difference of norm that still votes, share of the larger norm", "ours", 0, 1);
-  table->Add(group + "flow_max_slip", &max_slip,
-             "largest deviation of a match from the flow around it, pixels", "ours", 0, 1000);
-  table->Add(group + "flow_max_slip_ratio", &max_slip_ratio,
-             "or, if that is more, times the median deviation of the matches around it", "ours", 0,
-             1000);
-  table->Add(group + "flow_min_tolerance", &min_tolerance,
-             "vectors nearer to each other than this always vote, pixels", "ours", 0, 1000);
-}
 
 FeatureMatches FilterFlow(const std::vector<SeaPoint>& points1,
                           const std::vector<SeaPoint>& points2, const FeatureMatches& matches,

@@ -31,8 +31,8 @@ struct Candidate {
   }
 };
 
-// Distance to the epipolar line (Sampson), pixels: on rays by E where the cameras are calibrated,
-// on pixels by F where not.
+// The distance to the epipolar line (Sampson) in pixels: on rays and by E where the cameras are
+// calibrated, on pixels and by F where they are not.
 class EpipolarError {
  public:
   EpipolarError(const Camera& camera1, const std::vector<SeaPoint>& points1, const Camera& camera2,
@@ -71,7 +71,7 @@ class EpipolarError {
   std::vector<Eigen::Vector3d> places1_, places2_;
 };
 
-// Which SeaPoints of a picture are matched already.
+// Tells which SeaPoints of the two pictures are matched already.
 struct Taken {
   Taken(const Features& features1, const Features& features2, const FeatureMatches& matches)
       : in1(features1.points.size(), 0), in2(features2.points.size(), 0) {
@@ -83,36 +83,11 @@ struct Taken {
   std::vector<uint8_t> in1, in2;
 };
 
-}  // namespace
-
-void GuidedMatcherOptions::Bind(OptionTable* table) {
-  const std::string group = "SeaPointMatching.";
-  table->Add(group + "guided", &enabled,
-             "look for unmatched SeaPoints where the verified matches around them say they are",
-             "ours");
-  table->Add(group + "guided_max_distance", &max_distance,
-             "largest Hamming distance of a guided match, of 256 bits", "ours", 0, 256);
-  table->Add(group + "guided_max_slip", &max_slip,
-             "largest distance of a guided match from where the flow says it is, pixels", "ours", 0,
-             1000);
-  table->Add(group + "guided_max_slip_ratio", &max_slip_ratio,
-             "or, if that is more, times the median deviation of the matches around it", "ours", 0,
-             1000);
-  table->Add(group + "guided_max_error", &max_error,
-             "largest distance of a guided match from its epipolar line, pixels", "ours", 0, 100);
-}
-
-FeatureMatches MatchGuided(const Camera& camera1, const Features& features1, const Camera& camera2,
-                           const Features& features2, const FeatureMatches& matches,
-                           const TwoViewGeometry& geometry, const GuidedMatcherOptions& options) {
-  if (!options.enabled || geometry.inliers.size() < kMinFlow) return {};
-  if (!geometry.E && !geometry.F) return {};
-  if (OverlapShare(features1.points, features2.points, geometry.inliers) < kMinShareOfOverlap) {
-    return {};
-  }
-  const EpipolarError error(camera1, features1.points, camera2, features2.points, geometry);
-  Taken taken(features1, features2, matches);
-  LocalFlow flow(features1.points, features2.points, geometry.inliers);
+// Pairs of unmatched SeaPoints that lie where the flow and the epipolar line say, and look alike.
+std::vector<Candidate> FindCandidates(const Features& features1, const Features& features2,
+                                      const FeatureMatches& inliers, const EpipolarError& error,
+                                      const Taken& taken, const GuidedMatcherOptions& options) {
+  LocalFlow flow(features1.points, features2.points, inliers);
   const std::vector<double> slips = flow.Slips();
   SeaPointTree targets(features2.points);
   std::vector<uint32_t> nearby;
@@ -131,17 +106,38 @@ FeatureMatches MatchGuided(const Camera& camera1, const Features& features1, con
       if (distance <= options.max_distance) candidates.push_back({distance, i, j});
     }
   }
+  return candidates;
+}
+
+// One-to-one, the smallest distance first. Sorted by idx1.
+FeatureMatches ChooseNearest(std::vector<Candidate> candidates, Taken taken) {
   std::sort(candidates.begin(), candidates.end());
-  FeatureMatches added;
+  FeatureMatches chosen;
   for (const Candidate& candidate : candidates) {
     const FeatureMatch match = {candidate.idx1, candidate.idx2};
     if (taken.Holds(match)) continue;
     taken.Take(match);
-    added.push_back(match);
+    chosen.push_back(match);
   }
-  std::sort(added.begin(), added.end(),
+  std::sort(chosen.begin(), chosen.end(),
             [](const FeatureMatch& a, const FeatureMatch& b) { return a.idx1 < b.idx1; });
-  return added;
+  return chosen;
+}
+
+}  // namespace
+
+FeatureMatches MatchGuided(const Camera& camera1, const Features& features1, const Camera& camera2,
+                           const Features& features2, const FeatureMatches& matches,
+                           const TwoViewGeometry& geometry, const GuidedMatcherOptions& options) {
+  if (!options.enabled || geometry.inliers.size() < kMinFlow) return {};
+  if (!geometry.E && !geometry.F) return {};
+  if (OverlapShare(features1.points, features2.points, geometry.inliers) < kMinShareOfOverlap) {
+    return {};
+  }
+  const EpipolarError error(camera1, features1.points, camera2, features2.points, geometry);
+  const Taken taken(features1, features2, matches);
+  return ChooseNearest(
+      FindCandidates(features1, features2, geometry.inliers, error, taken, options), taken);
 }
 
 }  // namespace colmap_seapoint

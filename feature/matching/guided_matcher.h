@@ -6,28 +6,18 @@
 
 #include "colmap_seapoint/base/camera.h"
 #include "colmap_seapoint/base/features.h"
-#include "colmap_seapoint/base/options.h"
+#include "feature/matching/matching_options.h"
 
 namespace colmap_seapoint {
 
-struct GuidedMatcherOptions {
-  bool enabled = true;
-  int max_distance = 96;
-  double max_slip = 1.5;
-  double max_slip_ratio = 15;
-  double max_error = 1.5;
-
-  void Bind(OptionTable* table);
-};
-
-// What is to be added to geometry.inliers (and to the pair's matches): pairs of SeaPoints that
-// neither holds, sorted by idx1, one-to-one. Descriptors are compared as they are: turn them first
-// (picture_turn.h). A point's place in picture 2 is predicted from the inliers around it
-// (local_flow.h); candidates lie within max_slip, or max_slip_ratio times what is usual there,
-// whichever is more, and within max_error of the epipolar line. Of all of them the smallest Hamming
-// distance wins first (ties: the smaller indices). Nothing is added to a pair of fewer than 20
-// inliers, or whose inliers do not fill the overlap they imply (overlap_share.h), or without E and
-// F. O(n log n).
+// Returns the pairs of SeaPoints to be added to geometry.inliers and to the pair's matches, which
+// hold neither of the two yet: sorted by idx1, one-to-one. Descriptors are compared as they are, so
+// turn them first (picture_turn.h). A point's place in picture 2 is predicted from the inliers
+// around it (local_flow.h); candidates lie within max_slip, or max_slip_ratio times what is usual
+// there, whichever is more, and within max_error of the epipolar line. The smallest Hamming
+// distance of all wins first; ties go to the smaller indices. Nothing is added to a pair with fewer
+// than 20 inliers, without E and F, or whose inliers do not fill the overlap that they imply
+// (overlap_share.h). O(n log n).
 FeatureMatches MatchGuided(const Camera& camera1, const Features& features1, const Camera& camera2,
                            const Features& features2, const FeatureMatches& matches,
                            const TwoViewGeometry& geometry, const GuidedMatcherOptions& options);

@@ -19,13 +19,6 @@ int DistanceCap(const HammingMatcherOptions& options) {
 
 }  // namespace
 
-void HammingMatcherOptions::Bind(OptionTable* table) {
-  table->Add("SeaPointMatching.max_distance", &max_distance,
-             "largest Hamming distance of a match, of 256 bits", "ours", 0, 256);
-  table->Add("SeaPointMatching.max_ratio", &max_ratio,
-             "largest ratio of nearest to second nearest distance; 1 = no test", "ours", 0.1, 1);
-}
-
 int HammingDistance(const Descriptor& a, const Descriptor& b) {
   int distance = 0;
   for (size_t i = 0; i < a.size(); ++i) {

@@ -29,7 +29,7 @@ const std::vector<uint32_t>& LocalFlow::Nearest(const SeaPoint& place, size_t co
   return neighbors_;
 }
 
-// A rotation with a scale and a shift is to = a * from + b over complex numbers.
+// In complex numbers, a rotation with a scale and a shift is to = a * from + b.
 Eigen::Vector2d LocalFlow::Predict(const SeaPoint& place, std::optional<uint32_t> left_out) {
   Nearest(place, kNumNeighbors + (left_out ? 1 : 0));
   Complex mean_from = 0, mean_to = 0;

@@ -1,4 +1,4 @@
-// Where picture 2 shows a place of picture 1, after the matches around it (ours).
+// Predicts where picture 2 shows a place of picture 1 from the matches around that place (ours).
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@
 
 namespace colmap_seapoint {
 
-// Keeps references. Not for two threads at once.
+// Keeps references to what it is made from. Each thread needs its own: queries use scratch memory.
 class LocalFlow {
  public:
   LocalFlow(const std::vector<SeaPoint>& points1, const std::vector<SeaPoint>& points2,
@@ -20,16 +20,16 @@ class LocalFlow {
   // Indices of the up to `count` matches that start nearest to a place of picture 1, nearest first.
   const std::vector<uint32_t>& Nearest(const SeaPoint& place, size_t count);
 
-  // The similarity transform (least squares) of the kNumNeighbors nearest matches, at `place`;
-  // where they all start in about one place their mean shift alone. `left_out`: a match that has no
-  // say. NaN without any match.
+  // Moves `place` (pixels) by the similarity transform that fits its kNumNeighbors nearest matches
+  // best (least squares), or by their mean shift where they all start in about one place.
+  // `left_out` is a match that has no say. NaN without any match.
   Eigen::Vector2d Predict(const SeaPoint& place, std::optional<uint32_t> left_out = std::nullopt);
 
-  // By match: how far it ends from where the matches around it say, pixels.
+  // Returns, match by match, how far it ends from where the matches around it say, in pixels.
   std::vector<double> Slips();
 
-  // Median of `slips` (of Slips()) over the kNumNeighbors matches nearest to `place`: what relief
-  // and noise make usual there. `left_out` as above. 0 without any match.
+  // Returns the median of `slips` (from Slips()) over the kNumNeighbors matches nearest to `place`:
+  // relief and noise make that much usual there. `left_out` as above. 0 without any match.
   double UsualSlip(const SeaPoint& place, const std::vector<double>& slips,
                    std::optional<uint32_t> left_out = std::nullopt);
 

@@ -9,7 +9,7 @@ namespace {
 
 Eigen::Vector2d Place(const SeaPoint& point) { return {point.x, point.y}; }
 
-// Rotation and displacement that bring the first points of the matches nearest to the second.
+// The rotation and displacement that bring the first points of the matches nearest to the second.
 struct Motion {
   double cosine = 1, sine = 0;
   Eigen::Vector2d from = Eigen::Vector2d::Zero(), to = Eigen::Vector2d::Zero();

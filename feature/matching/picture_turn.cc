@@ -15,8 +15,8 @@ namespace {
 constexpr size_t kSampleSize = 400;
 constexpr int kCoarseStep = 2;  // tests still answer alike when turned by half of it too much
 
-// The strongest of every pyramid level, in proportion to the level's size. (Levels follow each
-// other, each strongest first.)
+// The strongest of every pyramid level, in proportion to the level's size. Levels follow each
+// other, each with its strongest first.
 std::vector<Descriptor> Strongest(const Features& features) {
   std::vector<Descriptor> sample;
   const size_t count = features.points.size();
@@ -29,8 +29,8 @@ std::vector<Descriptor> Strongest(const Features& features) {
   return sample;
 }
 
-// Mutual nearest neighbours vote, and near ones much more than far ones: chance gives distances of
-// 60 and more.
+// Mutual nearest neighbours vote, and near ones count much more than far ones, because chance gives
+// distances of 60 and more.
 int64_t Agreement(const std::vector<Descriptor>& sample1, const std::vector<Descriptor>& sample2,
                   int turn) {
   constexpr int kReach = 72;

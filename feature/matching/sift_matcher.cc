@@ -25,13 +25,6 @@ int DistanceCap(const SiftMatcherOptions& options) {
 
 }  // namespace
 
-void SiftMatcherOptions::Bind(OptionTable* table) {
-  table->Add("SeaPointMatching.max_sift_distance", &max_distance,
-             "largest angle between the SIFT descriptors of a match, radians", "ours", 0, 1.5);
-  table->Add("SeaPointMatching.max_sift_ratio", &max_ratio,
-             "largest ratio of nearest to second nearest angle; 1 = no test", "ours", 0.1, 1);
-}
-
 double SiftDistance(const SiftDescriptor& a, const SiftDescriptor& b) {
   int dot = 0;
   for (size_t i = 0; i < a.size(); ++i) dot += static_cast<int>(a[i]) * static_cast<int>(b[i]);

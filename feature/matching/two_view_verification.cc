@@ -68,7 +68,7 @@ Eigen::Matrix3d ToEigen(const cv::Mat& matrix) {
   return result;
 }
 
-// Sampson error of x2' [t]x R x1, in units of the normalised image plane.
+// The Sampson error of x2' [t]x R x1, in units of the normalised image plane.
 struct SampsonError {
   Eigen::Vector3d ray1, ray2;
 
@@ -109,7 +109,7 @@ void RefinePose(const Correspondences& all, const std::vector<uint8_t>& mask, do
   pose->rotation.normalize();
 }
 
-// Essential matrix of the inliers -> relative pose with unit translation, refined.
+// From the essential matrix of the inliers to the relative pose with unit translation, refined.
 std::optional<Rigid3d> RelativePose(const Correspondences& all, const std::vector<uint8_t>& inliers,
                                     double max_error) {
   if (!all.has_rays) return std::nullopt;
@@ -145,18 +145,36 @@ Eigen::Matrix3d EssentialFromPose(const Rigid3d& pose) {
   return cross * pose.rotation.toRotationMatrix();
 }
 
-}  // namespace
-
-void TwoViewVerificationOptions::Bind(OptionTable* table) {
-  const std::string group = "TwoViewGeometry.";
-  table->Add(group + "min_num_inliers", &min_num_inliers, "verified matches that a pair needs",
-             "COLMAP", 8, 100000);
-  table->Add(group + "max_error", &max_error, "largest epipolar or transfer error, pixels",
-             "COLMAP", 0.1, 100);
-  table->Add(group + "max_homography_ratio", &max_homography_ratio,
-             "share of inliers that a homography must explain for a pair to count as planar",
-             "COLMAP", 0, 1);
+// E on rays where the focal lengths are known, F on pixels where not.
+RobustModel EstimateEpipolar(const Correspondences& all, bool calibrated, double max_error,
+                             double max_ray_error) {
+  return Estimate(all.pixels1.size(), [&](std::vector<uint8_t>* mask) {
+    if (!calibrated) {
+      return cv::findFundamentalMat(all.pixels1, all.pixels2, cv::USAC_MAGSAC, max_error,
+                                    kConfidence, kMaxIterations, *mask);
+    }
+    return cv::findEssentialMat(all.rays1, all.rays2, cv::Mat::eye(3, 3, CV_64F), cv::USAC_MAGSAC,
+                                kConfidence, max_ray_error, *mask);
+  });
 }
+
+RobustModel EstimateHomography(const Correspondences& all, double max_error) {
+  return Estimate(all.pixels1.size(), [&](std::vector<uint8_t>* mask) {
+    return cv::findHomography(all.pixels1, all.pixels2, cv::USAC_MAGSAC, max_error, *mask,
+                              kMaxIterations, kConfidence);
+  });
+}
+
+TwoViewConfig ConfigOf(const RobustModel& epipolar, const RobustModel& homography, bool calibrated,
+                       const TwoViewVerificationOptions& options) {
+  const bool is_planar =
+      homography.num_inliers >= options.min_num_inliers &&
+      homography.num_inliers >= options.max_homography_ratio * epipolar.num_inliers;
+  if (is_planar) return TwoViewConfig::kPlanarOrPanoramic;
+  return calibrated ? TwoViewConfig::kCalibrated : TwoViewConfig::kUncalibrated;
+}
+
+}  // namespace
 
 TwoViewGeometry VerifyTwoViews(const Camera& camera1, const std::vector<SeaPoint>& points1,
                                const Camera& camera2, const std::vector<SeaPoint>& points2,
@@ -171,26 +189,13 @@ TwoViewGeometry VerifyTwoViews(const Camera& camera1, const std::vector<SeaPoint
       camera1.has_prior_focal_length && camera2.has_prior_focal_length && all.has_rays;
   const double max_ray_error =
       0.5 * options.max_error * (1 / camera1.MeanFocal() + 1 / camera2.MeanFocal());
-  const size_t count = matches.size();
-  const RobustModel epipolar = Estimate(count, [&](std::vector<uint8_t>* mask) {
-    if (!calibrated) {
-      return cv::findFundamentalMat(all.pixels1, all.pixels2, cv::USAC_MAGSAC, options.max_error,
-                                    kConfidence, kMaxIterations, *mask);
-    }
-    return cv::findEssentialMat(all.rays1, all.rays2, cv::Mat::eye(3, 3, CV_64F), cv::USAC_MAGSAC,
-                                kConfidence, max_ray_error, *mask);
-  });
-  const RobustModel homography = Estimate(count, [&](std::vector<uint8_t>* mask) {
-    return cv::findHomography(all.pixels1, all.pixels2, cv::USAC_MAGSAC, options.max_error, *mask,
-                              kMaxIterations, kConfidence);
-  });
-
-  const bool planar = homography.num_inliers >= options.min_num_inliers &&
-                      homography.num_inliers >= options.max_homography_ratio * epipolar.num_inliers;
+  const RobustModel epipolar = EstimateEpipolar(all, calibrated, options.max_error, max_ray_error);
+  const RobustModel homography = EstimateHomography(all, options.max_error);
   const RobustModel& best = homography.num_inliers > epipolar.num_inliers ? homography : epipolar;
   if (best.num_inliers < options.min_num_inliers) return geometry;
 
-  for (size_t i = 0; i < count; ++i) {
+  geometry.config = ConfigOf(epipolar, homography, calibrated, options);
+  for (size_t i = 0; i < matches.size(); ++i) {
     if (best.mask[i]) geometry.inliers.push_back(matches[i]);
   }
   geometry.cam2_from_cam1 = RelativePose(all, best.mask, max_ray_error);
@@ -201,9 +206,6 @@ TwoViewGeometry VerifyTwoViews(const Camera& camera1, const std::vector<SeaPoint
   } else if (calibrated && epipolar.num_inliers > 0) {
     geometry.E = ToEigen(epipolar.matrix);
   }
-  geometry.config = planar       ? TwoViewConfig::kPlanarOrPanoramic
-                    : calibrated ? TwoViewConfig::kCalibrated
-                                 : TwoViewConfig::kUncalibrated;
   return geometry;
 }
 

@@ -4,22 +4,16 @@
 
 #include "colmap_seapoint/base/camera.h"
 #include "colmap_seapoint/base/features.h"
-#include "colmap_seapoint/base/options.h"
+#include "feature/matching/matching_options.h"
 
 namespace colmap_seapoint {
 
-struct TwoViewVerificationOptions {
-  int min_num_inliers = 15;
-  double max_error = 4.0;
-  double max_homography_ratio = 0.8;
-
-  void Bind(OptionTable* table);
-};
-
-// config: kDegenerate when fewer than min_num_inliers matches agree on any model; kCalibrated (E)
-// when both focal lengths are priors; kUncalibrated (F) otherwise; kPlanarOrPanoramic (H) when a
-// homography explains max_homography_ratio of the inliers. cam2_from_cam1 is set whenever a pose
-// could be decomposed, with the cameras' present intrinsics. Deterministic.
+// Verifies `matches`. The config is kDegenerate when fewer than min_num_inliers matches agree on
+// any model; else kPlanarOrPanoramic (H) when a homography explains max_homography_ratio of the
+// inliers, kCalibrated (E) when both focal lengths are priors, kUncalibrated (F) when not.
+// cam2_from_cam1 is set whenever a pose could be decomposed, with the cameras' present intrinsics.
+// Deterministic: the estimators start from fixed seeds, and nothing depends on the number of
+// threads.
 TwoViewGeometry VerifyTwoViews(const Camera& camera1, const std::vector<SeaPoint>& points1,
                                const Camera& camera2, const std::vector<SeaPoint>& points2,
                                const FeatureMatches& matches,

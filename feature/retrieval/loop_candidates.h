@@ -1,4 +1,5 @@
-// From what each picture of a sequence looks like to the pairs that are worth a closer look (ours).
+// Chooses the pairs of a sequence that are worth a closer look, because the pictures that look like
+// one another lie along each other (ours).
 #pragma once
 
 #include <vector>
@@ -7,7 +8,8 @@
 
 namespace colmap_seapoint {
 
-// Raise it whenever the same SeaPoints give other loop pairs than before.
+// Raise it whenever the same SeaPoints give other loop pairs than before, together with the hash in
+// tests/feature/retrieval_version_test.cc.
 inline constexpr char kRetrievalVersion[] = "1";
 
 struct LoopCandidate {
@@ -15,11 +17,11 @@ struct LoopCandidate {
   int support = 0;                 // votes above chance, those of the pairs nearby included
 };
 
-// `retrieved`: one list a picture, in the order of the sequence, with low scores too. Where two
-// pictures show the same place, so do those before and after them: votes of the pairs around, along
-// the sequence, count along, less what chance gives to any pair. Each picture gets its best
-// `max_per_picture`; no pair of which one is among the `overlap` followers of the other. By the
-// smaller place, then the greater. About 50 us a picture.
+// `retrieved` holds one list a picture, in the order of the sequence, with low scores too. Where
+// two pictures show the same place, so do those before and after them: the votes of the pairs
+// around a pair, along the sequence, count along, less what chance gives to any pair. Each picture
+// gets its best `max_per_picture` candidates; pairs at most `overlap` places apart are matched
+// anyway and left out. Sorted by first, then second. About 50 us a picture.
 std::vector<LoopCandidate> ChooseLoopCandidates(
     const std::vector<std::vector<RetrievedPicture>>& retrieved, int overlap, int max_per_picture);
 

@@ -17,14 +17,14 @@ namespace {
 
 constexpr size_t kPointsPerWord = 256;
 constexpr size_t kSampleStride = 10;
-// Of 96 bits; the matcher's default, 80 of 256, in the same proportion.
+// The matcher's default, 80 of 256 bits, in proportion to the 96 bits of a signature.
 constexpr int kMaxSignatureDistance = 30;
 // A word that holds many times its share is texture that is everywhere: it tells nothing.
 constexpr size_t kMaxWordSize = 8 * kPointsPerWord;
 // A SeaPoint votes for its nearest few of all pictures: what is like it everywhere (shaded sand,
 // dark corners) would otherwise outvote the places that two pictures share.
 constexpr size_t kVotesPerPoint = 3;
-// By the number of their votes; the others are not asked whether their votes agree.
+// Only so many pictures, those with the most votes, are asked whether their votes agree.
 constexpr size_t kMinRanked = 64;
 
 // A query's descriptors are turned by so many steps to either side of their orientation.
@@ -75,6 +75,20 @@ int BestWindow(const std::array<int, kAngleSteps>& histogram) {
   return best;
 }
 
+// The pictures with the most votes, `max_count` at most; of equal ones the smaller index first.
+std::vector<uint32_t> RankByVotes(const std::vector<uint32_t>& counts, size_t max_count,
+                                  int min_count) {
+  std::vector<uint32_t> ranked;
+  for (uint32_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] > 0 && static_cast<int>(counts[i]) >= min_count) ranked.push_back(i);
+  }
+  std::sort(ranked.begin(), ranked.end(), [&](uint32_t a, uint32_t b) {
+    return counts[a] != counts[b] ? counts[a] > counts[b] : a < b;
+  });
+  ranked.resize(std::min(ranked.size(), max_count));
+  return ranked;
+}
+
 }  // namespace
 
 void AppendSample(const Features& features, std::vector<Descriptor>* sample) {
@@ -89,7 +103,7 @@ struct SeaPointIndex::Alike {
   int distance;
   const Entry* entry;
 
-  // By content, so that the order of the pictures does not matter.
+  // Ties are broken by content, so that the order of the pictures does not matter.
   friend bool operator<(const Alike& a, const Alike& b) {
     const auto key = [](const Alike& alike) {
       return std::tie(alike.distance, alike.entry->signature, alike.entry->x, alike.entry->y,
@@ -219,7 +233,9 @@ int SeaPointIndex::ScoreVotes(const Features& features, const Vote* begin, const
   std::vector<const Vote*> agreeing;
   int sum = 0;
   for (const Vote* vote = begin; vote != end; ++vote) {
-    const int off = static_cast<int8_t>(vote->angle_step - middle);  // around the turn
+    // The difference, modulo a turn.
+    const int off =
+        ((vote->angle_step - middle + kAngleSteps / 2) & (kAngleSteps - 1)) - kAngleSteps / 2;
     if (std::abs(off) > kAngleWindow) continue;
     sum += off;
     agreeing.push_back(vote);
@@ -248,41 +264,44 @@ int SeaPointIndex::ScoreVotes(const Features& features, const Vote* begin, const
   return score;
 }
 
+// The votes of the ranked pictures side by side, in the order of `ranked`.
+std::vector<SeaPointIndex::Vote> SeaPointIndex::GroupByPicture(
+    const std::vector<Vote>& votes, const std::vector<uint32_t>& ranked,
+    const std::vector<uint32_t>& counts) {
+  constexpr auto kUnranked = static_cast<size_t>(-1);
+  std::vector<size_t> next(counts.size(), kUnranked);
+  size_t num_votes = 0;
+  for (const uint32_t picture : ranked) {
+    next[picture] = num_votes;
+    num_votes += counts[picture];
+  }
+  std::vector<Vote> grouped(num_votes);
+  for (const Vote& vote : votes) {
+    if (next[vote.picture] != kUnranked) grouped[next[vote.picture]++] = vote;
+  }
+  return grouped;
+}
+
 std::vector<RetrievedPicture> SeaPointIndex::Query(const Features& features,
                                                    const std::vector<uint32_t>& excluded,
                                                    size_t max_count, int min_score) const {
   SEAPOINT_CHECK(!word_begins_.empty());  // Finish() was called
   std::vector<bool> is_excluded(num_pictures_, false);
   for (const uint32_t picture : excluded) is_excluded[picture] = true;
-  std::vector<Vote> votes = CollectVotes(features, is_excluded);
+  const std::vector<Vote> votes = CollectVotes(features, is_excluded);
   std::vector<uint32_t> counts(num_pictures_, 0);
   for (const Vote& vote : votes) ++counts[vote.picture];
-  std::vector<uint32_t> ranked;
-  for (uint32_t i = 0; i < num_pictures_; ++i) {
-    if (counts[i] > 0 && static_cast<int>(counts[i]) >= min_score) ranked.push_back(i);
-  }
-  std::sort(ranked.begin(), ranked.end(), [&](uint32_t a, uint32_t b) {
-    return counts[a] != counts[b] ? counts[a] > counts[b] : a < b;
-  });
-  ranked.resize(std::min(ranked.size(), std::max(kMinRanked, max_count)));
+  const std::vector<uint32_t> ranked =
+      RankByVotes(counts, std::max(kMinRanked, max_count), min_score);
+  const std::vector<Vote> grouped = GroupByPicture(votes, ranked, counts);
 
-  // Votes of the ranked pictures, side by side.
-  constexpr auto kUnranked = static_cast<size_t>(-1);
-  std::vector<size_t> next(num_pictures_, kUnranked);
-  size_t num_votes = 0;
-  for (const uint32_t picture : ranked) {
-    next[picture] = num_votes;
-    num_votes += counts[picture];
-  }
-  std::vector<Vote> sorted(num_votes);
-  for (const Vote& vote : votes) {
-    if (next[vote.picture] != kUnranked) sorted[next[vote.picture]++] = vote;
-  }
   std::vector<RetrievedPicture> retrieved;
+  const Vote* begin = grouped.data();
   for (const uint32_t picture : ranked) {
-    const Vote* end = sorted.data() + next[picture];
-    const int score = ScoreVotes(features, end - counts[picture], end);
+    const Vote* end = begin + counts[picture];
+    const int score = ScoreVotes(features, begin, end);
     if (score >= std::max(1, min_score)) retrieved.push_back({picture, score});
+    begin = end;
   }
   std::sort(retrieved.begin(), retrieved.end(), [](const auto& a, const auto& b) {
     return a.score != b.score ? a.score > b.score : a.picture < b.picture;

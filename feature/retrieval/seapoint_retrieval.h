@@ -1,6 +1,6 @@
-// Which pictures show the same place, among thousands (ours): SeaPoints vote, word by word, for the
-// pictures that hold their like, and the votes must agree on a rotation and a displacement. The
-// cost grows linearly with the number of pictures, since the words grow with them.
+// Finds the pictures that show the same place among thousands (ours): SeaPoints vote, word by word,
+// for the pictures that hold their like, and the votes must agree on a rotation and a displacement.
+// The cost grows linearly with the number of pictures, since the number of words grows with it.
 #pragma once
 
 #include <array>
@@ -13,12 +13,12 @@
 
 namespace colmap_seapoint {
 
-// Appends the descriptors of one picture that a vocabulary is trained on: every so many, strong
-// ones and weak ones.
+// Appends those descriptors of one picture that a vocabulary is trained on: every tenth, so that
+// strong and weak ones are among them.
 void AppendSample(const Features& features, std::vector<Descriptor>* sample);
 
-// Words for that many SeaPoints in all: a word holds about as many of them in a small dive as in a
-// large one.
+// Returns the number of words for that many SeaPoints in all: a word holds about as many of them in
+// a small dive as in a large one.
 size_t NumWordsFor(size_t num_points);
 
 struct RetrievedPicture {
@@ -71,6 +71,9 @@ class SeaPointIndex {
   static void Insert(const Alike& one, std::vector<Alike>* nearest);
   std::vector<Vote> CollectVotes(const Features& features,
                                  const std::vector<bool>& is_excluded) const;
+  static std::vector<Vote> GroupByPicture(const std::vector<Vote>& votes,
+                                          const std::vector<uint32_t>& ranked,
+                                          const std::vector<uint32_t>& counts);
   int ScoreVotes(const Features& features, const Vote* begin, const Vote* end) const;
 
   SeaPointVocabulary vocabulary_;

@@ -15,7 +15,7 @@ using Descriptors = std::vector<Centre>;
 
 constexpr size_t kMaxChildren = 8;
 constexpr int kNumRounds = 5;
-// Rounds look at that many descriptors a child: a majority needs no more.
+// A round looks at that many descriptors a child: a majority needs no more.
 constexpr size_t kSamplesPerChild = 100;
 
 Centre ToCentre(const Descriptor& descriptor) {
@@ -73,7 +73,7 @@ Descriptors FindCentres(const Centre* begin, const Centre* end, size_t num_centr
 }  // namespace
 
 SeaPointVocabulary::SeaPointVocabulary(std::vector<Descriptor> sample, size_t num_words, int seed) {
-  // In an order of their own, so that the order of the pictures does not matter.
+  // Sorted by their bits, so that the order of the pictures does not matter.
   std::sort(sample.begin(), sample.end());
   Descriptors members;
   members.reserve(sample.size());

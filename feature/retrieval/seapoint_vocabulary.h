@@ -17,19 +17,19 @@ struct TwoNearest;
 
 class SeaPointVocabulary {
  public:
-  // One word and no more: what an empty sample gives.
+  // A vocabulary of one word, as an empty sample gives it.
   SeaPointVocabulary() : SeaPointVocabulary({}, 1, 0) {}
 
-  // At most `num_words` words, each for about the same share of `sample`, fewer where descriptors
-  // are alike. The same for any order of the sample. O(n log(num_words)), about 1 us a descriptor;
-  // on the caller's thread.
+  // Trains at most `num_words` words, each for about the same share of `sample`, and fewer where
+  // descriptors are alike. The result is the same for any order of the sample. O(n log(num_words)),
+  // about 1 us a descriptor, on the caller's thread.
   SeaPointVocabulary(std::vector<Descriptor> sample, size_t num_words, int seed);
 
   size_t NumWords() const { return num_words_; }
 
-  // The word at the end of the nearest way down, and the one that is reached by taking the second
-  // nearest branch where that costs the fewest bits (the same word twice when there is only one).
-  // Any number of threads. About 0.2 us.
+  // Returns the word at the end of the nearest way down the tree, and the one that is reached by
+  // taking the second nearest branch where that costs the fewest bits; the same word twice when
+  // there is only one. Any number of threads. About 0.2 us.
   std::array<uint32_t, 2> NearestWords(const Descriptor& descriptor) const;
   uint32_t NearestWord(const Descriptor& descriptor) const;
 

@@ -9,6 +9,9 @@ set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/colmap_seapoint)
 install(TARGETS colmap_seapoint RUNTIME COMPONENT program)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
   DESTINATION ${package_doc_dir} COMPONENT program)
+install(FILES ${PROJECT_SOURCE_DIR}/colmap_seapoint/README.md
+  ${PROJECT_SOURCE_DIR}/colmap_seapoint/OPTIONS.md
+  DESTINATION ${package_doc_dir}/colmap_seapoint COMPONENT program)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE
   DESTINATION ${package_doc_dir} RENAME copyright COMPONENT program)
 
@@ -32,21 +35,27 @@ if(NOT CMAKE_CROSSCOMPILING AND NOT SEAPOINT_SANITIZE)
 endif()
 
 # --- libraries -----------------------------------------------------------------------------------
-foreach(box base feature densify flags simd)
-  set_target_properties(seapoint_${box} PROPERTIES EXPORT_NAME ${box})
+# What an outsider links: feature, densify, colmap, cloud, pipeline. The other targets come along;
+# only the headers that a room names as its public ones do.
+set(exported_targets
+  seapoint_flags seapoint_simd seapoint_base
+  seapoint_files seapoint_image seapoint_cloud seapoint_colmap seapoint_io
+  seapoint_feature_kernels seapoint_feature_detector seapoint_feature_descriptor
+  seapoint_feature_matching seapoint_feature_retrieval seapoint_feature
+  seapoint_densify_kernels seapoint_densify_match seapoint_densify_overlap seapoint_densify_cloud
+  seapoint_densify_sequence seapoint_densify_maps seapoint_densify
+  seapoint_georeference seapoint_compare seapoint_mapping seapoint_pictures seapoint_pairing
+  seapoint_report seapoint_pipeline)
+foreach(target IN LISTS exported_targets)
+  string(REPLACE seapoint_ "" name ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
 endforeach()
-install(TARGETS seapoint_base seapoint_feature_kernels seapoint_feature_detector seapoint_feature_descriptor seapoint_feature_matching seapoint_feature_retrieval seapoint_feature seapoint_densify seapoint_flags seapoint_simd
-  EXPORT colmap_seapoint_targets
-  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+# Below a folder of ours: "feature/..." is no name for /usr/include.
+install(TARGETS ${exported_targets} EXPORT colmap_seapoint_targets
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+  FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/colmap_seapoint COMPONENT development)
 install(EXPORT colmap_seapoint_targets NAMESPACE colmap_seapoint::
   FILE colmap_seapointTargets.cmake DESTINATION ${config_dir} COMPONENT development)
-# Below a folder of ours: "feature/..." is no name for /usr/include.
-set(header_dir ${CMAKE_INSTALL_INCLUDEDIR}/colmap_seapoint)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/colmap_seapoint/base
-  DESTINATION ${header_dir}/colmap_seapoint COMPONENT development FILES_MATCHING PATTERN "*.h")
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/feature ${PROJECT_SOURCE_DIR}/densify
-  DESTINATION ${header_dir} COMPONENT development FILES_MATCHING PATTERN "*.h"
-  PATTERN "seapoint_tree.h" EXCLUDE PATTERN "local_flow.h" EXCLUDE)  # need nanoflann; internal
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/colmap_seapointConfig.cmake.in
   ${CMAKE_BINARY_DIR}/colmap_seapointConfig.cmake INSTALL_DESTINATION ${config_dir})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/colmap_seapointConfigVersion.cmake
@@ -84,9 +93,11 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "colmap (>= 3.8)")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
   "dense point clouds from underwater pictures: libraries
 Static libraries, headers and CMake targets: colmap_seapoint::feature finds
-and matches SeaPoints, colmap_seapoint::densify makes clouds.")
+and matches SeaPoints, colmap_seapoint::densify makes clouds, ::colmap and
+::cloud read and write COLMAP's models and PLY, ::pipeline is the whole chain.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libcolmap-seapoint-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "libeigen3-dev, libopencv-dev (>= 4.5), libceres-dev (>= 2.0), libhwy-dev (>= 1.0.3), pkg-config")
+  "libeigen3-dev, libopencv-dev (>= 4.5), libceres-dev (>= 2.0), libhwy-dev (>= 1.0.3), pkg-config, \
+libsqlite3-dev, libproj-dev, libxxhash-dev, libjpeg-dev, libpng-dev, libtiff-dev, libexiv2-dev")
 include(CPack)

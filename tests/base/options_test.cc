@@ -6,9 +6,6 @@
 #include <limits>
 #include <string>
 
-#include "colmap_seapoint/base/natural_order.h"
-#include "colmap_seapoint/base/progress.h"
-
 namespace colmap_seapoint {
 namespace {
 
@@ -108,40 +105,6 @@ TEST(OptionTable, ADoubleBindingIsABug) {
   Values values;
   OptionTable table = values.Table();
   EXPECT_THROW(table.Add("Group.flag", &values.flag, "again", "ours"), std::logic_error);
-}
-
-TEST(NaturalLess, CountsAsAPersonDoes) {
-  EXPECT_TRUE(NaturalLess("img2.jpg", "img10.jpg"));
-  EXPECT_FALSE(NaturalLess("img10.jpg", "img2.jpg"));
-  EXPECT_TRUE(NaturalLess("a1/b9", "a1/b10"));
-  EXPECT_TRUE(NaturalLess("a9/b", "a10/a"));
-  EXPECT_TRUE(NaturalLess("img", "img1"));
-  EXPECT_TRUE(NaturalLess("1", "a"));
-  EXPECT_TRUE(NaturalLess("99999999999999999999998", "99999999999999999999999"));
-  EXPECT_TRUE(NaturalLess("a07b2", "a7b10"));
-}
-
-TEST(NaturalLess, IsAStrictTotalOrder) {
-  const std::string names[] = {"",     "0", "00", "7",   "07",  "7a",  "07a", "7a1",
-                               "7a01", "a", "a0", "a00", "a-1", "a/1", "A1",  "10"};
-  for (const std::string& a : names) {
-    EXPECT_FALSE(NaturalLess(a, a));
-    for (const std::string& b : names) {
-      EXPECT_EQ(a != b, NaturalLess(a, b) != NaturalLess(b, a)) << a << " " << b;
-      for (const std::string& c : names) {
-        if (NaturalLess(a, b) && NaturalLess(b, c)) {
-          EXPECT_TRUE(NaturalLess(a, c)) << a << " " << b << " " << c;
-        }
-      }
-    }
-  }
-}
-
-TEST(DurationText, IsShort) {
-  EXPECT_EQ(DurationText(0.04), "0.0 s");
-  EXPECT_EQ(DurationText(42.4), "42 s");
-  EXPECT_EQ(DurationText(185), "3 min 05 s");
-  EXPECT_EQ(DurationText(2 * 3600 + 7 * 60 + 59), "2 h 07 min");
 }
 
 }  // namespace

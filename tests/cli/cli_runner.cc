@@ -28,17 +28,20 @@ void RedirectTo(const fs::path& path, int descriptor) {
   dup2(file, descriptor);
 }
 
+void Limit(int resource, long value) {
+  const rlimit limit = {static_cast<rlim_t>(value), static_cast<rlim_t>(value)};
+  if (value > 0) setrlimit(static_cast<__rlimit_resource>(resource), &limit);
+}
+
 [[noreturn]] void Execute(const std::string& program, const std::vector<std::string>& arguments,
                           const CliOptions& options, const fs::path& out, const fs::path& err) {
   RedirectTo(out, STDOUT_FILENO);
   RedirectTo(err, STDERR_FILENO);
   for (const auto& [name, value] : options.environment) setenv(name.c_str(), value.c_str(), 1);
-  if (options.max_file_bytes > 0) {
-    const rlimit limit = {static_cast<rlim_t>(options.max_file_bytes),
-                          static_cast<rlim_t>(options.max_file_bytes)};
-    setrlimit(RLIMIT_FSIZE, &limit);
-    signal(SIGXFSZ, SIG_IGN);
-  }
+  Limit(RLIMIT_FSIZE, options.max_file_bytes);
+  Limit(RLIMIT_NPROC, options.max_processes);
+  Limit(RLIMIT_AS, options.max_address_bytes);
+  if (options.max_file_bytes > 0) signal(SIGXFSZ, SIG_IGN);
   if (options.as_nobody && (setgid(kNobody) != 0 || setuid(kNobody) != 0)) _exit(125);
   std::vector<char*> texts = {const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments)

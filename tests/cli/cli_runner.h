@@ -16,6 +16,8 @@ struct CliOptions {
   std::map<std::string, std::string> environment;  // added to ours
   bool as_nobody = false;                          // gives up root (of a test run as root)
   long max_file_bytes = 0;                         // no file may grow beyond it; 0 = no limit
+  long max_processes = 0;                          // RLIMIT_NPROC, threads too; 0 = no limit
+  long max_address_bytes = 0;                      // RLIMIT_AS; 0 = no limit
   double timeout_seconds = 60;                     // then it is killed
   // Kill -9 as soon as this says so; asked every few milliseconds with the seconds since the start.
   std::function<bool(double)> kill_when;

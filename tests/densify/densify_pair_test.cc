@@ -160,8 +160,9 @@ TEST(DensifyPairTest, FilledAndFootprintTellWhatIsThere) {
   const PartialDensificationOptions options;
   const PairInput input = FlatScene().Input(options);
   const PairResult result = DensifyPair(input, options, 2);
-  ASSERT_EQ(result.filled.size(), input.cells.Size());
-  const double samples_per_cell = input.cells.cell * input.cells.cell;  // a sample a pixel
+  ASSERT_EQ(result.filled.size(), input.known.grid.Size());
+  const double samples_per_cell =
+      input.known.grid.cell * input.known.grid.cell;  // a sample a pixel
   double num_expected = 0;
   for (const float share : result.filled) {
     EXPECT_TRUE(share >= 0 && share <= 1);
@@ -169,11 +170,11 @@ TEST(DensifyPairTest, FilledAndFootprintTellWhatIsThere) {
   }
   // Rectified pixels are not exactly as dense as those of a lens with distortion.
   EXPECT_NEAR(num_expected / static_cast<double>(result.cloud.points.size()), 1, 0.15);
-  EXPECT_GT(result.footprint.patches.size(), 0.7 * static_cast<double>(input.cells.Size()));
+  EXPECT_GT(result.footprint.patches.size(), 0.7 * static_cast<double>(input.known.grid.Size()));
   const double gsd = FlatScene().Gsd(kDepth);
   for (const SurfacePatch& patch : result.footprint.patches) {
     EXPECT_NEAR(patch.center.z(), kDepth, 2 * gsd);
-    EXPECT_NEAR(patch.size, input.cells.cell * gsd, 0.35 * input.cells.cell * gsd);
+    EXPECT_NEAR(patch.size, input.known.grid.cell * gsd, 0.35 * input.known.grid.cell * gsd);
     EXPECT_LE((patch.center - result.footprint.center).norm(), result.footprint.radius);
   }
   EXPECT_EQ(result.num_seeds, 300);
@@ -184,14 +185,14 @@ TEST(DensifyPairTest, FilledAndFootprintTellWhatIsThere) {
 // what is open and what is not is told apart by nodes.
 std::vector<int> PointsOfCells(const PairScene& scene, const PairInput& input,
                                const PartialCloud& cloud) {
-  std::vector<int> count(input.cells.Size(), 0);
+  std::vector<int> count(input.known.grid.Size(), 0);
   for (const DensePoint& point : cloud.points) {
     const auto pixel =
         scene.view1.camera.ImgFromCam(scene.view1.cam_from_world * point.xyz.cast<double>());
-    const double x = std::fmod(pixel->x(), input.cells.cell);
-    const double y = std::fmod(pixel->y(), input.cells.cell);
-    const double edge = std::min(std::min(x, y), input.cells.cell - std::max(x, y));
-    if (edge > kMinNodeStep) ++count[input.cells.IndexOf(pixel->x(), pixel->y())];
+    const double x = std::fmod(pixel->x(), input.known.grid.cell);
+    const double y = std::fmod(pixel->y(), input.known.grid.cell);
+    const double edge = std::min(std::min(x, y), input.known.grid.cell - std::max(x, y));
+    if (edge > kMinNodeStep) ++count[input.known.grid.IndexOf(pixel->x(), pixel->y())];
   }
   return count;
 }
@@ -203,20 +204,20 @@ double RangeAt(const PairScene& scene, const Eigen::Vector2d& pixel) {
 TEST(DensifyPairTest, ClosedCellsStayEmptyAndTheOthersDoNot) {
   const PartialDensificationOptions options;
   PairInput input = FlatScene().Input(options);
-  input.cells = CellGrid(480, 360, 20);
+  input.known.grid = CellGrid(480, 360, 20);
   const std::vector<int> before =
       PointsOfCells(FlatScene(), input, DensifyPair(input, options, 2).cloud);
-  input.closed.assign(input.cells.Size(), 0);
-  for (size_t cell = 0; cell < input.cells.Size(); ++cell) {
-    const Eigen::Vector2d center = input.cells.Center(cell);
-    input.closed[cell] = center.x() < 240 || (center.x() > 330 && center.y() < 100);
+  input.known.closed.assign(input.known.grid.Size(), 0);
+  for (size_t cell = 0; cell < input.known.grid.Size(); ++cell) {
+    const Eigen::Vector2d center = input.known.grid.Center(cell);
+    input.known.closed[cell] = center.x() < 240 || (center.x() > 330 && center.y() < 100);
   }
   const PairResult result = DensifyPair(input, options, 2);
   EXPECT_LT(result.num_seeds, 200);
   const std::vector<int> after = PointsOfCells(FlatScene(), input, result.cloud);
   int num_open_before = 0, num_open_after = 0;
-  for (size_t cell = 0; cell < input.cells.Size(); ++cell) {
-    if (input.closed[cell]) {
+  for (size_t cell = 0; cell < input.known.grid.Size(); ++cell) {
+    if (input.known.closed[cell]) {
       EXPECT_EQ(after[cell], 0);
     } else {
       num_open_before += before[cell];
@@ -229,19 +230,19 @@ TEST(DensifyPairTest, ClosedCellsStayEmptyAndTheOthersDoNot) {
 TEST(DensifyPairTest, CoveredCellsAtTheirDepthStayEmpty) {
   const PartialDensificationOptions options;
   PairInput input = FlatScene().Input(options);
-  input.cells = CellGrid(480, 360, 20);
-  input.covered_range.assign(input.cells.Size(), 0);
-  for (size_t cell = 0; cell < input.cells.Size(); ++cell) {
-    const Eigen::Vector2d center = input.cells.Center(cell);
+  input.known.grid = CellGrid(480, 360, 20);
+  input.known.covered_range.assign(input.known.grid.Size(), 0);
+  for (size_t cell = 0; cell < input.known.grid.Size(); ++cell) {
+    const Eigen::Vector2d center = input.known.grid.Center(cell);
     if (center.x() < 240) {
-      input.covered_range[cell] = static_cast<float>(RangeAt(FlatScene(), center));
+      input.known.covered_range[cell] = static_cast<float>(RangeAt(FlatScene(), center));
     }
   }
   const std::vector<int> count =
       PointsOfCells(FlatScene(), input, DensifyPair(input, options, 2).cloud);
   int num_open = 0;
-  for (size_t cell = 0; cell < input.cells.Size(); ++cell) {
-    if (input.covered_range[cell] > 0) {
+  for (size_t cell = 0; cell < input.known.grid.Size(); ++cell) {
+    if (input.known.covered_range[cell] > 0) {
       EXPECT_EQ(count[cell], 0);
     } else {
       num_open += count[cell];
@@ -258,12 +259,13 @@ double TableCoverage(double table_x, const PartialDensificationOptions& options)
   const Rectangle table = {{table_x, 0, 1.5}, {0.15, 0, 0}, {0, 0.15, 0}};
   const PairScene scene = SceneOf(World({ground, table}, texture));
   PairInput input = scene.Input(options, 600);
-  input.covered_range.assign(input.cells.Size(), 0);
-  for (size_t cell = 0; cell < input.cells.Size(); ++cell) {
-    const Eigen::Vector2d center = input.cells.Center(cell);
+  input.known.covered_range.assign(input.known.grid.Size(), 0);
+  for (size_t cell = 0; cell < input.known.grid.Size(); ++cell) {
+    const Eigen::Vector2d center = input.known.grid.Center(cell);
     if (center.x() > 300) continue;
     const auto on_ground = SurfaceAt(World({ground}, texture), scene.view1, center);
-    input.covered_range[cell] = static_cast<float>((*on_ground - scene.view1.Center()).norm());
+    input.known.covered_range[cell] =
+        static_cast<float>((*on_ground - scene.view1.Center()).norm());
   }
   const PairResult result = DensifyPair(input, options, 2);
   int64_t num_on_table = 0;
@@ -300,7 +302,7 @@ TEST(DensifyPairTest, WrongSeedsAreNotUsed) {
 TEST(DensifyPairTest, NothingToDoIsAStatus) {
   const PartialDensificationOptions options;
   PairInput input = FlatScene().Input(options);
-  input.closed.assign(input.cells.Size(), 1);
+  input.known.closed.assign(input.known.grid.Size(), 1);
   EXPECT_EQ(DensifyPair(input, options, 1).failure, "too few seeds in areas that are new");
   input = FlatScene().Input(options);
   input.view2 = input.view1;
@@ -329,12 +331,12 @@ TEST(DensifyPairTest, ExpansionIsLimited) {
 
 TEST(DensifyPairTest, StepAndCells) {
   PartialDensificationOptions options;
-  EXPECT_EQ(SampleStep(MakeCamera(CameraModel::kPinhole, 900, 480, 360), options), 1);
-  EXPECT_EQ(SampleStep(MakeCamera(CameraModel::kPinhole, 900, 4000, 3000), options), 4);
+  EXPECT_EQ(SampleStep(MakeCamera(CameraModel::kPinhole, 900, 480, 360), options.step), 1);
+  EXPECT_EQ(SampleStep(MakeCamera(CameraModel::kPinhole, 900, 4000, 3000), options.step), 4);
   options.step = 3;
   const Camera camera = MakeCamera(CameraModel::kPinhole, 900, 100, 50);
-  EXPECT_EQ(SampleStep(camera, options), 3);
-  const CellGrid cells = CellsOf(camera, options);
+  EXPECT_EQ(SampleStep(camera, options.step), 3);
+  const CellGrid cells = CellsOf(camera, options.step);
   EXPECT_EQ(cells.cell, 12);
   EXPECT_EQ(cells.width, 9);
   EXPECT_EQ(cells.height, 5);

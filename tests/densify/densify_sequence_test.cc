@@ -185,7 +185,7 @@ TEST(DensifySequenceTest, DebugShowsWhatHappened) {
       EXPECT_EQ(pair.view1.image_idx, pair.report.image_idx1);
       EXPECT_EQ(pair.view2.image_idx, pair.report.image_idx2);
       ++num_shown;
-      num_normal += static_cast<int64_t>(pair.normal.cloud.points.size());
+      num_normal += static_cast<int64_t>(pair.normal->cloud.points.size());
       if (pair.previous_picture == nullptr) return;
       ++num_with_previous;
       EXPECT_EQ(pair.report.pass, "sequence");
@@ -195,7 +195,7 @@ TEST(DensifySequenceTest, DebugShowsWhatHappened) {
       if (redundancy == "sequential") {
         EXPECT_EQ(pair.mask.OverlapRate(), pair.report.overlap);
       }
-      EXPECT_EQ(pair.covered_range.empty(), redundancy == "sequential");
+      EXPECT_EQ(pair.known.covered_range.empty(), redundancy == "sequential");
     });
     ExpectSameClouds(plain, shown);
     EXPECT_EQ(num_shown, static_cast<int>(shown.clouds.size()));

@@ -18,7 +18,7 @@ PairInput PairScene::Input(const PartialDensificationOptions& options, int num_s
   input.view2 = {1, view2.camera, view2.cam_from_world};
   input.picture1 = &picture1;
   input.luma2 = &luma2;
-  input.cells = CellsOf(view1.camera, options);
+  input.known.grid = CellsOf(view1.camera, options.step);
   std::mt19937 generator(3);
   std::uniform_real_distribution<double> x(0, view1.camera.width), y(0, view1.camera.height);
   for (int trial = 0; trial < 100 * num_seeds; ++trial) {

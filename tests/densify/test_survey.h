@@ -13,8 +13,9 @@
 #include <utility>
 #include <vector>
 
+#include "densify/densify_pair.h"
 #include "densify/densify_sequence.h"
-#include "densify/sequence/pair_debug.h"
+#include "densify/pair_debug.h"
 #include "tests/synthetic/world.h"
 
 namespace colmap_seapoint {

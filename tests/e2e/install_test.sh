@@ -30,10 +30,12 @@ cp -r "$examples" "$folder/user"
 include=$prefix/include/colmap_seapoint
 (cd "$include" && find . -name '*.h' | sort | sed 's|^\./\(.*\)$|#include "\1"|') \
   >"$folder/user/all_headers.cc"
-[ "$(wc -l <"$folder/user/all_headers.cc")" -gt 40 ] || fail "headers are missing"
+headers=$(wc -l <"$folder/user/all_headers.cc")
+[ "$headers" -ge 25 ] && [ "$headers" -le 32 ] || fail "$headers public headers"
 cat >>"$folder/user/CMakeLists.txt" <<'END'
 add_library(all_headers OBJECT all_headers.cc)
-target_link_libraries(all_headers PRIVATE colmap_seapoint::feature colmap_seapoint::densify)
+target_link_libraries(all_headers PRIVATE colmap_seapoint::feature colmap_seapoint::densify
+  colmap_seapoint::colmap colmap_seapoint::cloud colmap_seapoint::pipeline)
 END
 cmake -S "$folder/user" -B "$folder/user_build" -DCMAKE_PREFIX_PATH="$prefix" \
   -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Release >"$folder/configure.log" 2>&1 ||
@@ -55,6 +57,21 @@ grep -Eq '^[0-9]{4} SeaPoints, each with 256 bits' "$folder/out" || fail "$(cat 
 # The program and the library make the same cloud.
 "$program" partial_densifier --image_path "$folder/survey/images" --input_path \
   "$folder/survey/truth/sparse" --output_path "$folder/dense" 2>/dev/null || fail "partial_densifier"
+"$folder/user_build/reconstruct_folder" "$folder/survey/images" "$folder/workspace" \
+  >"$folder/reconstructed" || fail "reconstruct_folder"
+grep -q '^3 of 3 pictures used' "$folder/reconstructed" || fail "$(cat "$folder/reconstructed")"
+# Each library alone, with what only it needs.
+for component in feature densify colmap cloud pipeline; do
+  printf 'cmake_minimum_required(VERSION 3.16)\nproject(one LANGUAGES CXX)\n%s\n%s\n%s\n' \
+    "find_package(colmap_seapoint REQUIRED COMPONENTS $component)" \
+    "file(WRITE \${CMAKE_BINARY_DIR}/one.cc \"int main() {}\")" \
+    "add_executable(one \${CMAKE_BINARY_DIR}/one.cc)
+target_link_libraries(one PRIVATE colmap_seapoint::$component)" >"$folder/CMakeLists.txt"
+  cmake -S "$folder" -B "$folder/one_$component" -DCMAKE_PREFIX_PATH="$prefix" \
+    -DCMAKE_CXX_COMPILER="$compiler" >"$folder/configure.log" 2>&1 &&
+    cmake --build "$folder/one_$component" >"$folder/build.log" 2>&1 ||
+    fail "$component alone: $(cat "$folder/configure.log" "$folder/build.log")"
+done
 of_library=$(sed 's/ .*//' "$folder/out")
 of_program=$(sed -n 's/^element vertex //p;/^end_header/q' "$folder/dense/fused.ply")
 echo "points: library $of_library, program $of_program"

@@ -35,7 +35,8 @@ SeaPointExtractionOptions Interval(int min_count, int max_count, int num_levels 
 TEST(ExtractFeaturesTest, CountLiesInTheIntervalAndPointsInsideTheBorder) {
   const GrayImage picture = TexturedPicture(400, 300);
   const ExtractedFeatures result = ExtractFeatures(picture, GrayImage(), Interval(200, 240));
-  EXPECT_EQ(result.detection.status, ThresholdStatus::kConverged);
+  ASSERT_EQ(result.detection.size(), 1u);
+  EXPECT_EQ(result.detection[0].status, ThresholdStatus::kConverged);
   EXPECT_GE(result.features.points.size(), 200u);
   EXPECT_LE(result.features.points.size(), 240u);
   EXPECT_EQ(result.features.points.size(), result.features.descriptors.size());
@@ -66,7 +67,10 @@ TEST(ExtractFeaturesTest, FlatAndTinyPicturesHaveNone) {
     const ExtractedFeatures result = ExtractFeatures(picture, GrayImage(), Interval(10, 20, 3));
     EXPECT_TRUE(result.features.points.empty());
     EXPECT_TRUE(result.features.descriptors.empty());
-    EXPECT_EQ(result.detection.status, ThresholdStatus::kFlat);
+    EXPECT_EQ(result.detection.size(), picture.width == 300 ? 3u : 0u);
+    for (const DetectionSummary& level : result.detection) {
+      EXPECT_EQ(level.status, ThresholdStatus::kFlat);
+    }
   }
 }
 

@@ -93,16 +93,17 @@ void AnyOptions(Numbers* numbers, PartialDensificationOptions* options) {
 
 void AnyCells(Numbers* numbers, Case* c) {
   const Camera& camera = c->input.view1.camera;
-  c->input.cells = CellsOf(camera, c->options);
+  c->input.known.grid = CellsOf(camera, c->options.step);
   if (numbers->Below(2))
-    c->input.cells = CellGrid(camera.width, camera.height, 1 + numbers->Below(60));
-  c->input.in_full = numbers->Below(4) == 0;
+    c->input.known.grid = CellGrid(camera.width, camera.height, 1 + numbers->Below(60));
+  if (numbers->Below(4) == 0) c->input.mode = DensificationMode::kComplete;
   const int kinds = numbers->Below(4);
   const double range = std::exp(numbers->Between(-8, 8));
-  for (size_t cell = 0; cell < c->input.cells.Size(); ++cell) {
+  for (size_t cell = 0; cell < c->input.known.grid.Size(); ++cell) {
     const unsigned noise = static_cast<unsigned>((cell + 1) * 2654435761u) >> 24;
-    if (kinds & 1) c->input.closed.push_back(noise % 5 == 0);
-    if (kinds & 2) c->input.covered_range.push_back(noise % 3 ? 0 : static_cast<float>(range));
+    if (kinds & 1) c->input.known.closed.push_back(noise % 5 == 0);
+    if (kinds & 2)
+      c->input.known.covered_range.push_back(noise % 3 ? 0 : static_cast<float>(range));
   }
 }
 
@@ -139,7 +140,7 @@ void AnySeeds(double depth, Numbers* numbers, Case* c) {
 void RequireSane(const Case& c, const PairResult& result) {
   FUZZ_REQUIRE(result.failure.empty() || result.cloud.points.empty());
   FUZZ_REQUIRE(result.num_failed_seeds <= result.num_seeds);
-  FUZZ_REQUIRE(result.failure.empty() ? result.filled.size() == c.input.cells.Size() : true);
+  FUZZ_REQUIRE(result.failure.empty() ? result.filled.size() == c.input.known.grid.Size() : true);
   for (const float share : result.filled) FUZZ_REQUIRE(share >= 0 && share <= 1);
   for (const float disparity : result.partial.disparity) {
     FUZZ_REQUIRE(disparity >= 0 && disparity < 1e6f);

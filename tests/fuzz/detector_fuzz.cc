@@ -78,15 +78,13 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   Fill(data + kHeader, size - kHeader, 0, &c.picture);
   Fill(data + kHeader, size - kHeader, c.picture.data.size() + data[11], &c.mask);
 
-  DetectionSummary summary;
-  const std::vector<SeaPoint> points =
-      DetectSeaPoints(c.picture, c.mask, c.options, c.border, &summary, c.num_threads);
+  const auto [points, summary] =
+      DetectSeaPoints(c.picture, c.mask, c.options, c.border, c.num_threads);
   RequireDefinition(c, points);
   FUZZ_REQUIRE(static_cast<int>(points.size()) <= summary.num_local_maxima);
   for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
     hwy::SetSupportedTargetsForTest(target);
-    FUZZ_REQUIRE(
-        SameBytes(DetectSeaPoints(c.picture, c.mask, c.options, c.border, &summary), points));
+    FUZZ_REQUIRE(SameBytes(DetectSeaPoints(c.picture, c.mask, c.options, c.border).points, points));
   }
   hwy::SetSupportedTargetsForTest(0);
   return 0;

@@ -1,4 +1,4 @@
-// Scratch folders, whole files and expected errors for the tests of io.
+// Scratch folders and whole files for the tests of io.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -7,11 +7,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <iterator>
 #include <string>
 
-#include "colmap_seapoint/base/error.h"
+#include "tests/expect_error.h"
 
 namespace colmap_seapoint {
 
@@ -45,31 +44,6 @@ inline void WriteBytes(const std::filesystem::path& path, const std::string& byt
   stream << bytes;
   ASSERT_TRUE(stream.good()) << path;
 }
-
-// The text of the Error that `call` throws: one line "<where>: <finding>; <remedy>". Fails the test
-// when nothing or anything else is thrown.
-inline std::string ErrorOf(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    const std::string text = error.what();
-    EXPECT_NE(text.find(": "), std::string::npos) << text;
-    EXPECT_NE(text.find("; "), std::string::npos) << text;
-    EXPECT_EQ(text.find('\n'), std::string::npos) << text;
-    return text;
-  } catch (const std::exception& other) {
-    ADD_FAILURE() << "not an Error: " << other.what();
-    return "";
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return "";
-}
-
-#define EXPECT_ERROR(call, part)                                       \
-  do {                                                                 \
-    const std::string error_text = ErrorOf([&] { call; });             \
-    EXPECT_NE(error_text.find(part), std::string::npos) << error_text; \
-  } while (false)
 
 // The folder of real pictures and databases; tests skip when it is absent.
 inline std::filesystem::path DataDir() {

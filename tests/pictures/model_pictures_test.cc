@@ -4,6 +4,8 @@
 #include "colmap_seapoint/io/colmap/database_features.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/colmap/database_matches.h"
+#include "colmap_seapoint/io/files/content_hash.h"
+#include "colmap_seapoint/io/image/image_file.h"
 #include "tests/io/test_database.h"
 
 namespace colmap_seapoint {
@@ -64,6 +66,25 @@ TEST_F(ModelPicturesTest, AFailedVerificationIsAnAnswerAndNoVerificationIsNone) 
   EXPECT_EQ(pictures.ReadMatches(2, 1), (FeatureMatches{{8, 0}, {1, 2}}));
   EXPECT_EQ(pictures.ReadMatches(2, 3), std::nullopt);
   EXPECT_EQ(pictures.ReadMatches(0, 4), std::nullopt);
+}
+
+TEST_F(ModelPicturesTest, DescribesTheBytesThatItRead) {
+  ModelPictures pictures = Open();
+  const auto replace = [&](const char* name, uint8_t grey) {
+    GrayImage image(640, 480);
+    std::fill(image.data.begin(), image.data.end(), grey);
+    WriteImage(dir_ / "new.png", image);
+    std::filesystem::rename(dir_ / "new.png", dir_ / name);
+    return HashFile(dir_ / name);
+  };
+  const std::string first = replace("a", 10), of_b = replace("b", 20);
+  pictures.ReadPicture(0);
+  EXPECT_NE(replace("a", 20), first);
+  EXPECT_EQ(pictures.Describe(0).name, "a");
+  EXPECT_EQ(pictures.Describe(0).hash, first);
+  EXPECT_EQ(pictures.Describe(1).hash, of_b);  // never read: as it is now
+  EXPECT_EQ(pictures.Describe(1).size, std::filesystem::file_size(dir_ / "b"));
+  EXPECT_EQ(pictures.Describe(2).hash, "");  // no file
 }
 
 TEST_F(ModelPicturesTest, SeaPointsOfTheDatabaseOrNone) {

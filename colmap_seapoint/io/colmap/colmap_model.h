@@ -31,9 +31,9 @@ SparseModel ReadSparseModel(const std::filesystem::path& dir,
 
 using Frame = std::vector<uint32_t>;  // image_ids
 
-// Which pictures of a model a rig took at the same moment, two at least: frames.bin, or frames.txt
-// of a text model (3.12 and later). Empty when there is no such file. Throws Error for a damaged
-// file and for a picture that stands in two frames.
+// The groups of pictures, two at least, that a rig took at the same moment: frames.bin, or
+// frames.txt of a text model (3.12 and later). Empty when there is no such file. Throws Error for a
+// damaged file and for a picture that stands in two frames.
 std::vector<Frame> ReadFrames(const std::filesystem::path& dir, const SparseModel& model);
 
 // True when `dir` holds cameras/images/points3D in either form.

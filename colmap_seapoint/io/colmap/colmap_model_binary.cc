@@ -84,7 +84,7 @@ class BinaryReader {
 
 void ReadCameras(const std::filesystem::path& path, ModelBeingRead* read) {
   BinaryReader reader(path);
-  const uint64_t count = reader.ReadCount(24 + 3 * sizeof(double), "cameras");
+  const uint64_t count = reader.ReadCount(24 + 2 * sizeof(double), "cameras");
   for (uint64_t i = 0; i < count; ++i) {
     const RecordPlace place = reader.Place();
     const auto camera_id = reader.Read<uint32_t>();

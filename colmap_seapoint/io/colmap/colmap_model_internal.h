@@ -11,7 +11,7 @@
 
 namespace colmap_seapoint {
 
-// Where a record stands in its file, for messages: "byte 120" or "line 7".
+// The place of a record in its file, for messages: "byte 120" or "line 7".
 class RecordPlace {
  public:
   RecordPlace(const std::filesystem::path& path, const char* unit, uint64_t position)

@@ -107,7 +107,7 @@ std::vector<SiftDescriptor> ReadSift(const SqlConnection& db, uint32_t image_id,
   sift.Bind(static_cast<int64_t>(image_id));
   if (!sift.Step() || sift[0].Int() != static_cast<int64_t>(count) || sift[1].Int() != kSiftCols ||
       sift[2].Size() != count * sizeof(SiftDescriptor) ||
-      HashBytes(sift[2].Blob(), sift[2].Size()) != ours[0].Text()) {
+      !IsHashOf(ours[0].Text(), sift[2].Blob(), sift[2].Size())) {
     ThrowDamaged(db, image_id, "SIFT");
   }
   return RowsOf<SiftDescriptor>(sift[2]);
@@ -164,14 +164,14 @@ std::optional<Features> ReadFeatures(const ColmapDatabase& database, uint32_t im
   if (ours[1].Int() != sizeof(Descriptor) || num_rows < 0 ||
       ours[2].Size() % sizeof(Descriptor) != 0 ||
       ours[2].Size() / sizeof(Descriptor) != static_cast<uint64_t>(num_rows) ||
-      HashBytes(ours[2].Blob(), ours[2].Size()) != ours[4].Text()) {
+      !IsHashOf(ours[4].Text(), ours[2].Blob(), ours[2].Size())) {
     ThrowDamaged(db, image_id, "SeaPoint");
   }
   SqlStatement keypoints(db, "SELECT rows, cols, data FROM keypoints WHERE image_id = ?");
   keypoints.Bind(static_cast<int64_t>(image_id));
   if (!keypoints.Step() || keypoints[0].Int() != num_rows || keypoints[1].Int() != kKeypointCols ||
       keypoints[2].Size() != static_cast<uint64_t>(num_rows) * sizeof(SeaPoint) ||
-      HashBytes(keypoints[2].Blob(), keypoints[2].Size()) != ours[3].Text()) {
+      !IsHashOf(ours[3].Text(), keypoints[2].Blob(), keypoints[2].Size())) {
     return std::nullopt;
   }
   Features features;

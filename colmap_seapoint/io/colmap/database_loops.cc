@@ -24,7 +24,7 @@ std::vector<ImagePair> ReadLoopPairs(const ColmapDatabase& database) {
   SqlStatement row(db, "SELECT data, data_hash FROM seapoint_loop_pairs");
   if (!row.Step()) return {};
   const size_t bytes = row[0].Size();
-  if (bytes % sizeof(ImagePair) != 0 || HashBytes(row[0].Blob(), bytes) != row[1].Text()) {
+  if (bytes % sizeof(ImagePair) != 0 || !IsHashOf(row[1].Text(), row[0].Blob(), bytes)) {
     throw Error(db.path, "the list of its loop pairs is damaged",
                 "restore a copy of the database, or delete the table seapoint_loop_pairs");
   }

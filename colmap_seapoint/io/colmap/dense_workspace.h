@@ -24,7 +24,8 @@ std::filesystem::path NormalMapPath(const std::filesystem::path& workspace,
 void CreateDenseWorkspaceFolders(const std::filesystem::path& workspace,
                                  const std::vector<std::string>& image_names);
 
-// Of an earlier run: without fusion.cfg a workspace is not fused before it is whole again.
+// Removes what an earlier run left: without fusion.cfg a workspace is not fused before it is whole
+// again.
 void RemoveStereoConfigs(const std::filesystem::path& workspace);
 // fusion.cfg: which pictures are fused; patch-match.cfg: the same, each with its 20 best partners,
 // for who wants COLMAP's own maps as well. Atomic.

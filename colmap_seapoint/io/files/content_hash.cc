@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <cinttypes>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <new>
@@ -15,10 +16,22 @@
 namespace colmap_seapoint {
 namespace {
 
-std::string HexText(XXH64_hash_t hash) {
-  char text[17];
-  std::snprintf(text, sizeof(text), "%016" PRIx64, static_cast<uint64_t>(hash));
+constexpr size_t kNumDigits = 16;
+
+std::string HexText(uint64_t hash) {
+  char text[kNumDigits + 1];
+  std::snprintf(text, sizeof(text), "%016" PRIx64, hash);
   return text;
+}
+
+std::string Named(XXH64_hash_t hash) { return "xxh3-" + HexText(hash); }
+
+// Version 0.1 kept FNV-1a, without a name.
+std::string HashOfVersion01(const void* data, size_t size) {
+  uint64_t hash = 0xcbf29ce484222325ull;
+  const auto* bytes = static_cast<const unsigned char*>(data);
+  for (size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 0x100000001b3ull;
+  return HexText(hash);
 }
 
 }  // namespace
@@ -32,9 +45,13 @@ ContentHash::~ContentHash() { XXH3_freeState(state_); }
 
 void ContentHash::Add(const void* data, size_t size) { XXH3_64bits_update(state_, data, size); }
 
-std::string ContentHash::Hex() const { return HexText(XXH3_64bits_digest(state_)); }
+std::string ContentHash::Text() const { return Named(XXH3_64bits_digest(state_)); }
 
-std::string HashBytes(const void* data, size_t size) { return HexText(XXH3_64bits(data, size)); }
+std::string HashBytes(const void* data, size_t size) { return Named(XXH3_64bits(data, size)); }
+
+bool IsHashOf(const std::string& hash, const void* data, size_t size) {
+  return hash == (hash.size() == kNumDigits ? HashOfVersion01(data, size) : HashBytes(data, size));
+}
 
 std::string HashText(const std::string& text) { return HashBytes(text.data(), text.size()); }
 
@@ -57,7 +74,7 @@ std::string HashFile(const std::filesystem::path& path) {
   if (std::ferror(file.get())) {
     throw Error(path.string(), "cannot be read to its end", "check the disk");
   }
-  return hash.Hex();
+  return hash.Text();
 }
 
 }  // namespace colmap_seapoint

@@ -1,4 +1,4 @@
-// Tells whether bytes changed (64-bit XXH3); no protection against intent.
+// Hashes that tell whether bytes changed (64-bit XXH3). They are no protection against intent.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@ struct XXH3_state_s;
 
 namespace colmap_seapoint {
 
-// Of bytes that come piece by piece; the same hash however they are cut.
+// The hash of bytes that come piece by piece; it is the same however they are cut.
 class ContentHash {
  public:
   ContentHash();
@@ -19,16 +19,17 @@ class ContentHash {
   ContentHash& operator=(const ContentHash&) = delete;
 
   void Add(const void* data, size_t size);
-  // 16 hex digits.
-  std::string Hex() const;
+  std::string Text() const;
 
  private:
   XXH3_state_s* state_;
 };
 
-// 16 hex digits.
+// "xxh3-" and 16 hex digits each; HashFile(path) is HashBytes() of the file's contents.
 std::string HashBytes(const void* data, size_t size);
 std::string HashText(const std::string& text);
+// Whether `hash` is that of these bytes, as this version or an earlier one wrote it.
+bool IsHashOf(const std::string& hash, const void* data, size_t size);
 // Throws Error for a file that cannot be read to its end.
 std::string HashFile(const std::filesystem::path& path);
 

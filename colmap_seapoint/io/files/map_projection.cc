@@ -16,7 +16,7 @@ using Object = std::unique_ptr<PJ, PJ* (*)(PJ*)>;
 
 Object Own(PJ* object) { return Object(object, &proj_destroy); }
 
-// What is wrong with the coordinate axes of a projected system; "" when they are metres.
+// Says what is wrong with the coordinate axes of a projected system; "" when they are metres.
 std::string AxesProblem(PJ_CONTEXT* context, const PJ* crs) {
   const PJ_TYPE type = proj_get_type(crs);
   if (type == PJ_TYPE_COMPOUND_CRS) {

@@ -22,7 +22,7 @@ Columns ParseHeader(const CsvTable& table) {
   for (const char* base : {kMetres, kAltitude, kDepth}) {
     if (table.header.rfind(base, 0) != 0) continue;
     const std::string rest = table.header.substr(std::string(base).size());
-    if (rest != "" && rest != ",sigma" && rest != ",sigma_xy,sigma_z") continue;
+    if (!rest.empty() && rest != ",sigma" && rest != ",sigma_xy,sigma_z") continue;
     return {base != kMetres, base == kDepth, rest.empty() ? 0u : rest == ",sigma" ? 1u : 2u};
   }
   throw Error(table.header_where, "the header line is '" + table.header_text.substr(0, 80) + "'",

@@ -1,4 +1,5 @@
-// Where pictures were taken, from a table that the user brings (a navigation log, a survey).
+// The places where pictures were taken, from a table that the user brings (a navigation log, a
+// survey).
 #pragma once
 
 #include <Eigen/Core>

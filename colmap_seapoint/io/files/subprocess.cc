@@ -14,8 +14,6 @@
 
 #include "colmap_seapoint/base/error.h"
 
-extern char** environ;
-
 namespace colmap_seapoint {
 namespace {
 
@@ -157,7 +155,7 @@ void WriteLog(int log, const std::filesystem::path& path, const char* data, size
   }
 }
 
-// Until every holder of the pipe's other end is gone.
+// Reads until every holder of the pipe's other end is gone.
 void CopyOutput(int input, int log, const std::filesystem::path& log_path,
                 const std::function<void(const std::string&)>& on_line) {
   std::string line;

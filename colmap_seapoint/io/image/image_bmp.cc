@@ -70,20 +70,20 @@ std::array<uint8_t, 4 * 256> Palette(const std::filesystem::path& path, const Bm
 
 }  // namespace
 
-ImageSize ReadBmpSize(const std::filesystem::path& path) {
-  return ReadHeader(path, OpenImageFile(path).get()).size;
+ImageSize ReadBmpSize(const ImageSource& source) {
+  return ReadHeader(source.path, source.file.get()).size;
 }
 
-Image<uint8_t> DecodeBmp(const std::filesystem::path& path) {
-  const BmpHeader header = ReadHeader(path, OpenImageFile(path).get());
-  const std::vector<uint8_t> file = ReadWholeFile(path);
+Image<uint8_t> DecodeBmp(const ImageSource& source) {
+  const BmpHeader header = ReadHeader(source.path, source.file.get());
+  const std::vector<uint8_t> file = ReadAll(source);
   const auto num_rows = static_cast<uint64_t>(header.size.height);
   if (header.pixel_offset < kHeaderBytes || header.pixel_offset > file.size() ||
       (file.size() - header.pixel_offset) / header.RowBytes() < num_rows) {
-    ThrowDamagedImage(path, "the file ends too early");
+    ThrowDamagedImage(source.path, "the file ends too early");
   }
   std::array<uint8_t, 4 * 256> palette{};
-  if (header.bits == 8) palette = Palette(path, header, file);
+  if (header.bits == 8) palette = Palette(source.path, header, file);
   Image<uint8_t> image(header.size.width, header.size.height, 3);
   for (int y = 0; y < image.height; ++y) {
     const auto stored_row = static_cast<uint64_t>(header.is_top_down ? y : image.height - 1 - y);

@@ -1,4 +1,4 @@
-// What EXIF tells about the camera and its place. For image_file.cc only.
+// Reads what EXIF tells about the camera and its place. For image_file.cc only.
 #pragma once
 
 #include <filesystem>

@@ -12,6 +12,7 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/files/content_hash.h"
 #include "colmap_seapoint/io/image/image_codecs.h"
 #include "colmap_seapoint/io/image/image_exif.h"
 
@@ -69,57 +70,53 @@ auto WithinMemory(const std::filesystem::path& path, Decoder decode) {
 }
 
 // 1 or 3 channels.
-Image<uint8_t> Decode(const std::filesystem::path& path, ImageFormat format) {
-  return WithinMemory(path, [&] {
-    switch (format) {
-      case ImageFormat::kJpeg:
-        return DecodeJpeg(path);
-      case ImageFormat::kPng:
-        return DecodePng(path);
-      case ImageFormat::kTiff:
-        return DecodeTiff(path);
-      case ImageFormat::kPnm:
-        return DecodePnm(path);
-      case ImageFormat::kBmp:
-        return DecodeBmp(path);
-      default:
-        return DecodeWithOpenCv(path, format);
-    }
-  });
-}
-
-Picture DecodePlanes(const std::filesystem::path& path, JpegContent content) {
-  const ImageFormat format = DetectImageFormat(path);
-  return WithinMemory(path, [&] {
-    if (format == ImageFormat::kJpeg) return DecodeJpegPlanes(path, content);
-    Image<uint8_t> image = Decode(path, format);
-    Picture picture;
-    if (image.channels == 1) {
-      picture.luma = std::move(image);
-    } else if (content == JpegContent::kLuma) {
-      picture.luma = LumaOf(image);
-    } else {
-      picture = PictureOf(image);
-    }
-    return picture;
-  });
-}
-
-ImageSize ReadSize(const std::filesystem::path& path) {
-  const ImageFormat format = DetectImageFormat(path);
+Image<uint8_t> DecodePixels(const ImageSource& source) {
+  const ImageFormat format = DetectImageFormat(source);
   switch (format) {
     case ImageFormat::kJpeg:
-      return ReadJpegSize(path);
+      return DecodeJpeg(source);
     case ImageFormat::kPng:
-      return ReadPngSize(path);
+      return DecodePng(source);
     case ImageFormat::kTiff:
-      return ReadTiffSize(path);
+      return DecodeTiff(source);
     case ImageFormat::kPnm:
-      return ReadPnmSize(path);
+      return DecodePnm(source);
     case ImageFormat::kBmp:
-      return ReadBmpSize(path);
+      return DecodeBmp(source);
+    default:
+      return DecodeWithOpenCv(source, format);
+  }
+}
+
+Picture DecodePlanes(const ImageSource& source, JpegContent content) {
+  if (DetectImageFormat(source) == ImageFormat::kJpeg) return DecodeJpegPlanes(source, content);
+  Image<uint8_t> image = DecodePixels(source);
+  Picture picture;
+  if (image.channels == 1) {
+    picture.luma = std::move(image);
+  } else if (content == JpegContent::kLuma) {
+    picture.luma = LumaOf(image);
+  } else {
+    picture = PictureOf(image);
+  }
+  return picture;
+}
+
+ImageSize ReadSize(const ImageSource& source) {
+  const ImageFormat format = DetectImageFormat(source);
+  switch (format) {
+    case ImageFormat::kJpeg:
+      return ReadJpegSize(source);
+    case ImageFormat::kPng:
+      return ReadPngSize(source);
+    case ImageFormat::kTiff:
+      return ReadTiffSize(source);
+    case ImageFormat::kPnm:
+      return ReadPnmSize(source);
+    case ImageFormat::kBmp:
+      return ReadBmpSize(source);
     default: {  // rare: not worth a header parser each
-      const Image<uint8_t> image = Decode(path, format);
+      const Image<uint8_t> image = DecodeWithOpenCv(source, format);
       return {image.width, image.height};
     }
   }
@@ -140,23 +137,33 @@ Image<uint8_t> Convert(const Image<uint8_t>& image, int num_channels, int code) 
 
 }  // namespace
 
-FileHandle OpenImageFile(const std::filesystem::path& path) {
-  std::error_code ignored;
+ImageSource OpenImageFile(const std::filesystem::path& path) {
   FileHandle file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (file == nullptr) {
     throw Error(path.string(), std::string("cannot be read (") + std::strerror(errno) + ")",
                 "check the path and the file's permissions");
   }
-  if (!std::filesystem::is_regular_file(path, ignored)) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
     throw Error(path.string(), "is no file", "give a picture");
   }
-  return file;
+  const uint64_t size = std::filesystem::file_size(path, error);
+  return {path, std::move(file), error ? 0 : size};
 }
 
-std::vector<uint8_t> ReadWholeFile(const std::filesystem::path& path) {
-  const FileHandle file = OpenImageFile(path);
-  std::vector<uint8_t> bytes(std::filesystem::file_size(path));
-  bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file.get()));
+ImageSource OpenImageBytes(const std::filesystem::path& path, const std::vector<uint8_t>& bytes) {
+  FileHandle file(fmemopen(const_cast<uint8_t*>(bytes.data()), bytes.size(), "rb"), &std::fclose);
+  if (file == nullptr) throw std::bad_alloc();
+  return {path, std::move(file), bytes.size()};
+}
+
+std::vector<uint8_t> ReadAll(const ImageSource& source) {
+  std::rewind(source.file.get());
+  std::vector<uint8_t> bytes(source.size);
+  bytes.resize(std::fread(bytes.data(), 1, bytes.size(), source.file.get()));
+  if (std::ferror(source.file.get())) {
+    throw Error(source.path.string(), "cannot be read to its end", "check the disk");
+  }
   return bytes;
 }
 
@@ -176,10 +183,11 @@ ImageSize CheckImageSize(const std::filesystem::path& path, uint64_t width, uint
   return {static_cast<int>(width), static_cast<int>(height)};
 }
 
-ImageFormat DetectImageFormat(const std::filesystem::path& path) {
-  const FileHandle file = OpenImageFile(path);
+ImageFormat DetectImageFormat(const ImageSource& source) {
+  const std::filesystem::path& path = source.path;
   char head[12] = {0};
-  const size_t size = std::fread(head, 1, sizeof(head), file.get());
+  const size_t size = std::fread(head, 1, sizeof(head), source.file.get());
+  std::rewind(source.file.get());
   if (size == 0) {
     throw Error(path.string(), "is empty (zero bytes)",
                 "copy the picture again from its source, or take it out of the folder");
@@ -265,7 +273,7 @@ bool IsSafeImageName(const std::string& name) {
 }
 
 ImageInfo ReadImageInfo(const std::filesystem::path& path) {
-  const ImageSize size = ReadSize(path);
+  const ImageSize size = WithinMemory(path, [&] { return ReadSize(OpenImageFile(path)); });
   ExifInfo exif = ReadExif(path, size);
   ImageInfo info;
   info.width = size.width;
@@ -277,17 +285,39 @@ ImageInfo ReadImageInfo(const std::filesystem::path& path) {
   return info;
 }
 
-GrayImage ReadGrayImage(const std::filesystem::path& path) {
-  return DecodePlanes(path, JpegContent::kLuma).luma;
+PictureFile::PictureFile(const std::filesystem::path& path) : path_(path) {
+  const ImageSource source = OpenImageFile(path);
+  DetectImageFormat(source);  // what is no picture may be larger than the memory
+  bytes_ = WithinMemory(path, [&] { return ReadAll(source); });
 }
 
-Picture ReadPicture(const std::filesystem::path& path) {
-  return DecodePlanes(path, JpegContent::kPlanes);
+std::string PictureFile::Hash() const { return HashBytes(bytes_.data(), bytes_.size()); }
+
+GrayImage PictureFile::DecodeGray() const {
+  return WithinMemory(
+      path_, [&] { return DecodePlanes(OpenImageBytes(path_, bytes_), JpegContent::kLuma).luma; });
 }
+
+Picture PictureFile::Decode() const {
+  return WithinMemory(
+      path_, [&] { return DecodePlanes(OpenImageBytes(path_, bytes_), JpegContent::kPlanes); });
+}
+
+ColorImage PictureFile::DecodeColor() const {
+  return WithinMemory(path_, [&] {
+    Image<uint8_t> image = DecodePixels(OpenImageBytes(path_, bytes_));
+    return image.channels == 3 ? image : Convert(image, 3, cv::COLOR_GRAY2RGB);
+  });
+}
+
+GrayImage ReadGrayImage(const std::filesystem::path& path) {
+  return PictureFile(path).DecodeGray();
+}
+
+Picture ReadPicture(const std::filesystem::path& path) { return PictureFile(path).Decode(); }
 
 ColorImage ReadColorImage(const std::filesystem::path& path) {
-  Image<uint8_t> image = Decode(path, DetectImageFormat(path));
-  return image.channels == 3 ? image : Convert(image, 3, cv::COLOR_GRAY2RGB);
+  return PictureFile(path).DecodeColor();
 }
 
 void WriteImage(const std::filesystem::path& path, const Image<uint8_t>& image) {

@@ -1,4 +1,5 @@
-// Pictures on disk: listing, size and EXIF without decoding, decoding to grey and to colour.
+// Pictures on disk: listing them, size and EXIF without decoding, hash and pixels from one reading,
+// writing.
 #pragma once
 
 #include <cstdint>
@@ -38,14 +39,34 @@ struct ImageInfo {
 // Reads the header (and EXIF) only. Throws Error for missing, zero-byte, unreadable files.
 ImageInfo ReadImageInfo(const std::filesystem::path& path);
 
-// Whole decodes; EXIF orientation ignored (as COLMAP does: the pixels as they are stored). 16-bit
-// pictures are scaled to 8 bits. Grey is 0.299 R + 0.587 G + 0.114 B: of a JPEG, the luma that it
-// holds, so ReadGrayImage(path) == ReadPicture(path).luma, always.
-// Throws Error for what cannot be decoded *whole*: a truncated JPEG, PNG or TIFF is an error, not a
-// half-grey picture. Nothing is printed by the codec libraries.
+// A picture's file, read whole and once: its hash and its pixels come from the same bytes.
+//
+// EXIF orientation is ignored, as COLMAP does: the pixels are as they are stored. 16-bit pictures
+// are scaled to 8 bits. Grey is 0.299 R + 0.587 G + 0.114 B; of a JPEG, the luma that it holds, so
+// that DecodeGray() == Decode().luma, always. Decoders throw Error for what cannot be decoded
+// *whole*: a truncated JPEG, PNG or TIFF is an error, not a half-grey picture. The codec libraries
+// print nothing. Several threads may decode one file.
+class PictureFile {
+ public:
+  // Throws Error for a file that cannot be read to its end, is empty, or is of no known format.
+  explicit PictureFile(const std::filesystem::path& path);
+
+  uint64_t Size() const { return bytes_.size(); }  // bytes
+  std::string Hash() const;                        // that of HashFile()
+
+  GrayImage DecodeGray() const;
+  // A JPEG's own planes, neither enlarged nor converted; of other formats, and of a JPEG that holds
+  // none such, the planes of its red, green and blue. A grey picture has no colour.
+  Picture Decode() const;
+  ColorImage DecodeColor() const;
+
+ private:
+  std::filesystem::path path_;
+  std::vector<uint8_t> bytes_;
+};
+
+// For a picture whose file nobody keeps: PictureFile(path).DecodeGray() and so on.
 GrayImage ReadGrayImage(const std::filesystem::path& path);
-// A JPEG's own planes, neither enlarged nor converted; of other formats, and of a JPEG that holds
-// none such, the planes of its red, green and blue. A grey picture has no colour.
 Picture ReadPicture(const std::filesystem::path& path);
 ColorImage ReadColorImage(const std::filesystem::path& path);
 

@@ -54,7 +54,7 @@ void PrintNothing(j_common_ptr) {}
 
 // Owns the decompressor, so that a longjmp passes no destructor.
 struct JpegDecoder {
-  explicit JpegDecoder(const std::filesystem::path& path) : file(OpenImageFile(path)) {
+  explicit JpegDecoder(const ImageSource& source) : file(source.file.get()) {
     info.err = jpeg_std_error(&errors.manager);
     errors.manager.error_exit = OnError;
     errors.manager.emit_message = OnMessage;
@@ -64,7 +64,7 @@ struct JpegDecoder {
   JpegDecoder(const JpegDecoder&) = delete;
   JpegDecoder& operator=(const JpegDecoder&) = delete;
 
-  FileHandle file;
+  std::FILE* file;
   jpeg_decompress_struct info{};
   JpegErrors errors;
 };
@@ -72,7 +72,7 @@ struct JpegDecoder {
 bool ReadHeader(JpegDecoder* decoder) {
   if (setjmp(decoder->errors.jump) != 0) return false;
   jpeg_create_decompress(&decoder->info);
-  jpeg_stdio_src(&decoder->info, decoder->file.get());
+  jpeg_stdio_src(&decoder->info, decoder->file);
   jpeg_read_header(&decoder->info, TRUE);
   return true;
 }
@@ -192,7 +192,7 @@ Image<uint8_t> DecodeInColor(const std::filesystem::path& path, const ImageSize&
   }
 }
 
-// Without upsampling and colour conversion, half of a decoder's work.
+// Leaves out upsampling and colour conversion, half of a decoder's work.
 Picture DecodeAsStored(const std::filesystem::path& path, const ImageSize& size,
                        JpegDecoder* decoder) {
   if (!Start(decoder, JCS_YCbCr, true)) ThrowDamagedImage(path, decoder->errors.message);
@@ -219,27 +219,27 @@ ImageSize CheckHeader(const std::filesystem::path& path, JpegDecoder* decoder) {
 
 }  // namespace
 
-ImageSize ReadJpegSize(const std::filesystem::path& path) {
-  JpegDecoder decoder(path);
-  return CheckHeader(path, &decoder);
+ImageSize ReadJpegSize(const ImageSource& source) {
+  JpegDecoder decoder(source);
+  return CheckHeader(source.path, &decoder);
 }
 
-Image<uint8_t> DecodeJpeg(const std::filesystem::path& path) {
-  JpegDecoder decoder(path);
-  const ImageSize size = CheckHeader(path, &decoder);
-  return DecodeInColor(path, size, &decoder);
+Image<uint8_t> DecodeJpeg(const ImageSource& source) {
+  JpegDecoder decoder(source);
+  const ImageSize size = CheckHeader(source.path, &decoder);
+  return DecodeInColor(source.path, size, &decoder);
 }
 
-Picture DecodeJpegPlanes(const std::filesystem::path& path, JpegContent content) {
-  JpegDecoder decoder(path);
-  const ImageSize size = CheckHeader(path, &decoder);
+Picture DecodeJpegPlanes(const ImageSource& source, JpegContent content) {
+  JpegDecoder decoder(source);
+  const ImageSize size = CheckHeader(source.path, &decoder);
   Picture picture;
   if (HoldsPlanes(decoder.info)) {
-    if (content == JpegContent::kPlanes) return DecodeAsStored(path, size, &decoder);
-    picture.luma = DecodePixels(path, size, JCS_GRAYSCALE, &decoder);
+    if (content == JpegContent::kPlanes) return DecodeAsStored(source.path, size, &decoder);
+    picture.luma = DecodePixels(source.path, size, JCS_GRAYSCALE, &decoder);
     return picture;
   }
-  Image<uint8_t> image = DecodeInColor(path, size, &decoder);
+  Image<uint8_t> image = DecodeInColor(source.path, size, &decoder);
   if (image.channels == 3) return PictureOf(image);
   picture.luma = std::move(image);
   return picture;

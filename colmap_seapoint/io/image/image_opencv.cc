@@ -55,26 +55,28 @@ bool IsWhole(const std::vector<uint8_t>& file, ImageFormat format) {
 
 }  // namespace
 
-Image<uint8_t> DecodeWithOpenCv(const std::filesystem::path& path, ImageFormat format) {
+Image<uint8_t> DecodeWithOpenCv(const ImageSource& source, ImageFormat format) {
   static const bool is_silent = [] {
     cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
     return true;
   }();
   static_cast<void>(is_silent);
-  const std::vector<uint8_t> file = ReadWholeFile(path);
-  if (!IsWhole(file, format)) ThrowDamagedImage(path, "the file ends too early");
+  const std::vector<uint8_t> file = ReadAll(source);
+  if (!IsWhole(file, format)) ThrowDamagedImage(source.path, "the file ends too early");
   cv::Mat decoded;
   try {
     // Unchanged: the orientation is ignored too.
     decoded = cv::imdecode(file, cv::IMREAD_UNCHANGED);
-    if (decoded.empty()) ThrowDamagedImage(path, "OpenCV cannot decode it");
-    CheckImageSize(path, static_cast<uint64_t>(decoded.cols), static_cast<uint64_t>(decoded.rows));
+    if (decoded.empty()) ThrowDamagedImage(source.path, "OpenCV cannot decode it");
+    CheckImageSize(source.path, static_cast<uint64_t>(decoded.cols),
+                   static_cast<uint64_t>(decoded.rows));
     if (decoded.depth() == CV_16U) decoded.convertTo(decoded, CV_8U, 1.0 / 257.0);
-    if (decoded.depth() != CV_8U) ThrowDamagedImage(path, "its pixels are not of 8 or 16 bits");
+    if (decoded.depth() != CV_8U)
+      ThrowDamagedImage(source.path, "its pixels are not of 8 or 16 bits");
     if (decoded.channels() == 3) cv::cvtColor(decoded, decoded, cv::COLOR_BGR2RGB);
     if (decoded.channels() == 4) cv::cvtColor(decoded, decoded, cv::COLOR_BGRA2RGB);
   } catch (const cv::Exception&) {
-    ThrowDamagedImage(path, "OpenCV cannot decode it");
+    ThrowDamagedImage(source.path, "OpenCV cannot decode it");
   }
   Image<uint8_t> image(decoded.cols, decoded.rows, decoded.channels());
   for (int y = 0; y < image.height; ++y) {

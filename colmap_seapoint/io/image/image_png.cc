@@ -2,7 +2,6 @@
 
 #include <csetjmp>
 #include <cstring>
-#include <system_error>
 
 #include "colmap_seapoint/io/image/image_codecs.h"
 
@@ -28,16 +27,16 @@ void OnWarning(png_structp, png_const_charp) {}
 
 // Owns the reader, so that a longjmp passes no destructor.
 struct PngDecoder {
-  explicit PngDecoder(const std::filesystem::path& path) : file(OpenImageFile(path)) {
+  explicit PngDecoder(const ImageSource& source) : file(source.file.get()) {
     png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &errors, OnError, OnWarning);
     if (png != nullptr) info = png_create_info_struct(png);
-    if (info == nullptr) ThrowDamagedImage(path, "libpng cannot start");
+    if (info == nullptr) ThrowDamagedImage(source.path, "libpng cannot start");
   }
   ~PngDecoder() { png_destroy_read_struct(&png, &info, nullptr); }
   PngDecoder(const PngDecoder&) = delete;
   PngDecoder& operator=(const PngDecoder&) = delete;
 
-  FileHandle file;
+  std::FILE* file;
   PngErrors errors;
   png_structp png = nullptr;
   png_infop info = nullptr;
@@ -45,7 +44,7 @@ struct PngDecoder {
 
 bool ReadHeader(PngDecoder* decoder) {
   if (setjmp(decoder->errors.jump) != 0) return false;
-  png_init_io(decoder->png, decoder->file.get());
+  png_init_io(decoder->png, decoder->file);
   png_read_info(decoder->png, decoder->info);
   return true;
 }
@@ -77,29 +76,27 @@ ImageSize CheckHeader(const std::filesystem::path& path, PngDecoder* decoder) {
 
 }  // namespace
 
-ImageSize ReadPngSize(const std::filesystem::path& path) {
-  PngDecoder decoder(path);
-  return CheckHeader(path, &decoder);
+ImageSize ReadPngSize(const ImageSource& source) {
+  PngDecoder decoder(source);
+  return CheckHeader(source.path, &decoder);
 }
 
-Image<uint8_t> DecodePng(const std::filesystem::path& path) {
-  PngDecoder decoder(path);
-  const ImageSize size = CheckHeader(path, &decoder);
-  std::error_code error;
-  const uint64_t file_bytes = std::filesystem::file_size(path, error);
+Image<uint8_t> DecodePng(const ImageSource& source) {
+  PngDecoder decoder(source);
+  const ImageSize size = CheckHeader(source.path, &decoder);
   const uint64_t raw_bytes =
       png_get_rowbytes(decoder.png, decoder.info) * static_cast<uint64_t>(size.height);
-  if (error || raw_bytes / kMaxPackRatio > file_bytes + kSignatureBytes) {
-    ThrowDamagedImage(path, "the file is too short for its size in pixels");
+  if (raw_bytes / kMaxPackRatio > source.size + kSignatureBytes) {
+    ThrowDamagedImage(source.path, "the file is too short for its size in pixels");
   }
-  if (!Start(&decoder)) ThrowDamagedImage(path, decoder.errors.message);
+  if (!Start(&decoder)) ThrowDamagedImage(source.path, decoder.errors.message);
   Image<uint8_t> image(size.width, size.height, png_get_channels(decoder.png, decoder.info));
   if (png_get_rowbytes(decoder.png, decoder.info) != image.Stride()) {
-    ThrowDamagedImage(path, "its pixels are of an unknown kind");
+    ThrowDamagedImage(source.path, "its pixels are of an unknown kind");
   }
   std::vector<png_bytep> rows(static_cast<size_t>(size.height));
   for (int y = 0; y < size.height; ++y) rows[static_cast<size_t>(y)] = image.Row(y);
-  if (!ReadRows(&decoder, rows.data())) ThrowDamagedImage(path, decoder.errors.message);
+  if (!ReadRows(&decoder, rows.data())) ThrowDamagedImage(source.path, decoder.errors.message);
   return image;
 }
 

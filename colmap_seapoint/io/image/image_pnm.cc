@@ -55,33 +55,32 @@ PnmHeader ReadHeader(const std::filesystem::path& path, std::FILE* file) {
 
 }  // namespace
 
-ImageSize ReadPnmSize(const std::filesystem::path& path) {
-  return ReadHeader(path, OpenImageFile(path).get()).size;
+ImageSize ReadPnmSize(const ImageSource& source) {
+  return ReadHeader(source.path, source.file.get()).size;
 }
 
-Image<uint8_t> DecodePnm(const std::filesystem::path& path) {
-  const FileHandle file = OpenImageFile(path);
-  const PnmHeader header = ReadHeader(path, file.get());
+Image<uint8_t> DecodePnm(const ImageSource& source) {
+  const PnmHeader header = ReadHeader(source.path, source.file.get());
   const size_t sample_bytes = header.max_value > 255 ? 2 : 1;
   const uint64_t num_samples = static_cast<uint64_t>(header.size.width) *
                                static_cast<uint64_t>(header.size.height) *
                                static_cast<uint64_t>(header.channels);
-  std::error_code error;
-  if (std::filesystem::file_size(path, error) < num_samples * sample_bytes || error) {
-    ThrowDamagedImage(path, "the file ends too early");
+  if (source.size < num_samples * sample_bytes) {
+    ThrowDamagedImage(source.path, "the file ends too early");
   }
   Image<uint8_t> image(header.size.width, header.size.height, header.channels);
   std::vector<uint8_t> row(image.Stride() * sample_bytes);
   for (int y = 0; y < image.height; ++y) {
-    if (!header.is_ascii && std::fread(row.data(), 1, row.size(), file.get()) != row.size()) {
-      ThrowDamagedImage(path, "the file ends too early");
+    if (!header.is_ascii &&
+        std::fread(row.data(), 1, row.size(), source.file.get()) != row.size()) {
+      ThrowDamagedImage(source.path, "the file ends too early");
     }
     for (size_t i = 0; i < image.Stride(); ++i) {
-      const uint32_t value = header.is_ascii ? ReadNumber(path, file.get())
+      const uint32_t value = header.is_ascii ? ReadNumber(source.path, source.file.get())
                              : sample_bytes == 1
                                  ? row[i]
                                  : static_cast<uint32_t>(row[2 * i]) * 256u + row[2 * i + 1];
-      if (value > header.max_value) ThrowDamagedImage(path, "a value is above its maximum");
+      if (value > header.max_value) ThrowDamagedImage(source.path, "a value is above its maximum");
       image.Row(y)[i] =
           static_cast<uint8_t>((value * 255u + header.max_value / 2) / header.max_value);
     }

@@ -27,16 +27,38 @@ int OnWarning(TIFF*, void*, const char*, const char*, va_list) { return 1; }
 
 using TiffHandle = std::unique_ptr<TIFF, void (*)(TIFF*)>;
 
-TiffHandle OpenTiff(const std::filesystem::path& path, TiffErrors* errors) {
-  OpenImageFile(path);  // the error of a file that cannot be opened
+std::FILE* FileOf(thandle_t source) { return static_cast<const ImageSource*>(source)->file.get(); }
+
+tmsize_t Read(thandle_t source, void* bytes, tmsize_t count) {
+  return static_cast<tmsize_t>(std::fread(bytes, 1, static_cast<size_t>(count), FileOf(source)));
+}
+
+tmsize_t WriteNothing(thandle_t, void*, tmsize_t) { return 0; }
+
+toff_t Seek(thandle_t source, toff_t offset, int whence) {
+  if (fseeko(FileOf(source), static_cast<off_t>(offset), whence) != 0) {
+    return static_cast<toff_t>(-1);
+  }
+  return static_cast<toff_t>(ftello(FileOf(source)));
+}
+
+int CloseNothing(thandle_t) { return 0; }
+
+toff_t SizeOf(thandle_t source) { return static_cast<const ImageSource*>(source)->size; }
+
+// `source` and `errors` must outlive it.
+TiffHandle OpenTiff(const ImageSource& source, TiffErrors* errors) {
   TIFFOpenOptions* options = TIFFOpenOptionsAlloc();
   TIFFOpenOptionsSetErrorHandlerExtR(options, OnError, errors);
   TIFFOpenOptionsSetWarningHandlerExtR(options, OnWarning, nullptr);
   TIFFOpenOptionsSetMaxSingleMemAlloc(options, kMaxAllocation);
   // 'm': no memory mapping, which would crash when the file shrinks meanwhile.
-  TiffHandle tiff(TIFFOpenExt(path.c_str(), "rm", options), &TIFFClose);
+  TiffHandle tiff(
+      TIFFClientOpenExt(source.path.c_str(), "rm", const_cast<ImageSource*>(&source), Read,
+                        WriteNothing, Seek, CloseNothing, SizeOf, nullptr, nullptr, options),
+      &TIFFClose);
   TIFFOpenOptionsFree(options);
-  if (tiff == nullptr) ThrowDamagedImage(path, errors->first);
+  if (tiff == nullptr) ThrowDamagedImage(source.path, errors->first);
   return tiff;
 }
 
@@ -57,21 +79,21 @@ bool IsGrey(TIFF* tiff) {
 
 }  // namespace
 
-ImageSize ReadTiffSize(const std::filesystem::path& path) {
+ImageSize ReadTiffSize(const ImageSource& source) {
   TiffErrors errors;
-  return CheckHeader(path, OpenTiff(path, &errors).get());
+  return CheckHeader(source.path, OpenTiff(source, &errors).get());
 }
 
-Image<uint8_t> DecodeTiff(const std::filesystem::path& path) {
+Image<uint8_t> DecodeTiff(const ImageSource& source) {
   TiffErrors errors;
-  const TiffHandle tiff = OpenTiff(path, &errors);
-  const ImageSize size = CheckHeader(path, tiff.get());
+  const TiffHandle tiff = OpenTiff(source, &errors);
+  const ImageSize size = CheckHeader(source.path, tiff.get());
   char message[1024] = "";
-  if (!TIFFRGBAImageOK(tiff.get(), message)) ThrowDamagedImage(path, message);
+  if (!TIFFRGBAImageOK(tiff.get(), message)) ThrowDamagedImage(source.path, message);
   TIFFRGBAImage reader;
   const int stop_on_error = 1;
   if (!TIFFRGBAImageBegin(&reader, tiff.get(), stop_on_error, message)) {
-    ThrowDamagedImage(path, message);
+    ThrowDamagedImage(source.path, message);
   }
   // The rows as they are stored, whatever the orientation tag says.
   reader.orientation = ORIENTATION_TOPLEFT;
@@ -81,7 +103,7 @@ Image<uint8_t> DecodeTiff(const std::filesystem::path& path) {
   std::vector<uint32_t> raster(static_cast<size_t>(width) * height);
   const bool is_read = TIFFRGBAImageGet(&reader, raster.data(), width, height) != 0;
   TIFFRGBAImageEnd(&reader);
-  if (!is_read || !errors.first.empty()) ThrowDamagedImage(path, errors.first);
+  if (!is_read || !errors.first.empty()) ThrowDamagedImage(source.path, errors.first);
 
   const bool is_grey = IsGrey(tiff.get());
   Image<uint8_t> image(size.width, size.height, is_grey ? 1 : 3);

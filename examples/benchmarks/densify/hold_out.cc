@@ -67,7 +67,7 @@ HoldOut HoldOutPoints(const SparseModel& model, int every,
     }
     if (point.track.size() < kMinTrackLength || point.error > kMaxError) continue;
     const PosedImage& view = FirstView(model, point, position);
-    const int step = SampleStep(model.cameras.at(view.camera_id), densification);
+    const int step = SampleStep(model.cameras.at(view.camera_id), densification.step);
     const double parallax = std::min(LargestParallax(model, point, position), kHalfPi);
     held.eligible.push_back({point.xyz.cast<float>(), GsdOf(model, point, view),
                              static_cast<double>(step),

@@ -50,7 +50,7 @@ LoadedSet Load(const DensifySet& set, const PartialDensificationOptions& densifi
     throw Error(loaded.set.input_path.string(), "holds no pictures", "give another model");
   }
   const Camera& camera = loaded.model.cameras.at(loaded.model.images.front().camera_id);
-  loaded.spacing = MedianGsd(loaded.model) * SampleStep(camera, densification);
+  loaded.spacing = MedianGsd(loaded.model) * SampleStep(camera, densification.step);
   return loaded;
 }
 

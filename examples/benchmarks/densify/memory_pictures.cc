@@ -19,11 +19,17 @@ int64_t ThreadCpuNanoseconds() {
   return int64_t{now.tv_sec} * 1000000000 + now.tv_nsec;
 }
 
+std::optional<ColmapDatabase> OpenDatabase(const std::string& path) {
+  if (path.empty()) return std::nullopt;
+  return ColmapDatabase(path, ColmapDatabase::Mode::kReadOnly);
+}
+
 }  // namespace
 
 MemoryPictures::MemoryPictures(const SparseModel& model, const std::filesystem::path& image_path,
                                const std::string& database_path, int num_threads)
-    : source_(model, image_path, database_path, SeaPointExtractionOptions(),
+    : database_(OpenDatabase(database_path)),
+      source_(model, image_path, database_ ? &*database_ : nullptr, SeaPointExtractionOptions(),
               SeaPointMatchingOptions()) {
   pictures_.resize(model.images.size());
   features_.resize(model.images.size());

@@ -33,12 +33,14 @@ class MemoryPictures : public PictureSource {
   void DropSeaPoints(int image_idx, const std::vector<Eigen::Vector2d>& places, double radius);
 
   double Megapixels() const;
-  // To find and describe all SeaPoints; kNotMeasured when they came from the database.
+  // CPU seconds for finding and describing all SeaPoints; kNotMeasured when they came from the
+  // database.
   double SeaPointCpuSeconds() const { return seapoint_cpu_; }
-  // In Match(), since construction.
+  // CPU seconds spent in Match() since construction.
   double MatchCpuSeconds() const { return 1e-9 * static_cast<double>(match_nanoseconds_); }
 
  private:
+  std::optional<ColmapDatabase> database_;
   ModelPictures source_;
   bool dropped_ = false;
   std::vector<Picture> pictures_;

@@ -8,6 +8,8 @@
 #include "examples/benchmarks/feature/pair_measures.h"
 #include "feature/extract_features.h"
 #include "feature/match_features.h"
+#include "feature/matching/flow_filter.h"
+#include "feature/matching/two_view_verification.h"
 
 namespace colmap_seapoint {
 namespace {

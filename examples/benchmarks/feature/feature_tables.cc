@@ -79,7 +79,7 @@ std::string Text(double value, const char* format) {
 
 std::string Percent(double share) { return Text(100 * share, "%.1f"); }
 
-// By picture: the same for all pairs that it is in.
+// The value of each picture, which is the same in all pairs that it is part of.
 std::map<std::string, double> ByPicture(const Rows& rows, double FeatureRow::*of1,
                                         double FeatureRow::*of2) {
   std::map<std::string, double> values;

@@ -38,7 +38,7 @@ MeasuredPicture MeasurePicture(const MeasureOptions& options, const std::string&
   picture.name = name;
   picture.camera = MakeCamera(CameraModel::kSimpleRadial, 1.2 * std::max(grey.width, grey.height),
                               grey.width, grey.height);
-  picture.grid = CellsOf(picture.camera, PartialDensificationOptions());
+  picture.grid = CellsOf(picture.camera, PartialDensificationOptions().step);
   picture.texture = FindTexture(grey, picture.grid);
   picture.features.resize(detectors.size());
   std::vector<std::vector<double>> seconds(detectors.size());

@@ -6,7 +6,7 @@
 
 #include "colmap_seapoint/base/features.h"
 #include "colmap_seapoint/base/image.h"
-#include "densify/overlap/cell_grid.h"
+#include "densify/match/cell_grid.h"
 #include "densify/overlap/influence_mask.h"
 
 namespace colmap_seapoint {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "colmap_seapoint/base/features.h"
-#include "densify/overlap/cell_grid.h"
+#include "densify/match/cell_grid.h"
 #include "densify/overlap/influence_mask.h"
 #include "examples/survey/survey.h"
 #include "examples/survey/visibility.h"

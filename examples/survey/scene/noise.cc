@@ -21,7 +21,7 @@ Gradient GradientAt(uint64_t seed, int64_t i, int64_t j) {
 
 float Fade(float t) { return t * t * t * (t * (t * 6 - 15) + 10); }
 
-// Where the nodes of one axis fall in the lattice.
+// The places at which the nodes of one axis fall in the lattice.
 struct Axis {
   std::vector<int> cell;  // relative to first_cell
   std::vector<float> fraction;

@@ -20,7 +20,7 @@ inline uint64_t Hash(uint64_t seed, int64_t a, int64_t b = 0) {
               static_cast<uint64_t>(b) * 0xa0761d6478bd642fULL);
 }
 
-// In [0, 1).
+// A number in [0, 1) from a hash.
 inline double Uniform(uint64_t hash) { return static_cast<double>(hash >> 11) * 0x1p-53; }
 
 // Mean 0, standard deviation 1, never beyond 3: the sum of three uniform numbers.
@@ -41,6 +41,11 @@ struct GridSpec {
 
   double X(int i) const { return static_cast<double>(ix0 + i) * step; }
   double Y(int j) const { return static_cast<double>(iy0 + j) * step; }
+  size_t Size() const { return static_cast<size_t>(nx) * static_cast<size_t>(ny); }
+  size_t Index(int i, int j) const {
+    return static_cast<size_t>(j) * static_cast<size_t>(nx) + static_cast<size_t>(i);
+  }
+  // Of the outermost nodes, metres.
   double MinX() const { return X(0); }
   double MinY() const { return Y(0); }
   double MaxX() const { return X(nx - 1); }
@@ -48,7 +53,6 @@ struct GridSpec {
   bool Contains(double x, double y) const {
     return x >= MinX() && y >= MinY() && x <= MaxX() && y <= MaxY();
   }
-  size_t Size() const { return static_cast<size_t>(nx) * static_cast<size_t>(ny); }
 };
 
 using Field = std::vector<float>;  // row by row, grid.Size() values

@@ -9,7 +9,7 @@
 namespace colmap_seapoint {
 namespace {
 
-// What both heights and colours depend on.
+// The fields that both heights and colours depend on.
 struct Ground {
   Field rock;       // 0 sand ... 1 rock
   Field roughness;  // deviation 1

@@ -49,7 +49,8 @@ class AlbedoMap {
   // Makes what is missing within the rectangle; drops the tiles unused for longest first.
   void Prepare(double min_x, double min_y, double max_x, double max_y, int num_threads);
 
-  // Only within the rectangle of the last Prepare(). Any number of threads.
+  // The colour at a place within the rectangle of the last Prepare(). May be called from any number
+  // of threads.
   Albedo At(double x, double y) const;
 
  private:

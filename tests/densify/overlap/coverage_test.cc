@@ -112,9 +112,9 @@ TEST(ProjectCoverageTest, OfARealPair) {
   const PairInput input = scene.Input(options);
   const PairResult result = DensifyPair(input, options, 2);
   const ViewCoverage coverage = ProjectCoverage({result.footprint}, scene.view1.camera,
-                                                scene.view1.cam_from_world, input.cells);
+                                                scene.view1.cam_from_world, input.known.grid);
   int num_missing = 0, num_filled = 0, num_false = 0;
-  for (size_t cell = 0; cell < input.cells.Size(); ++cell) {
+  for (size_t cell = 0; cell < input.known.grid.Size(); ++cell) {
     num_filled += result.filled[cell] >= 0.9f;
     num_missing += result.filled[cell] >= 0.9f && coverage.range[cell] == 0;
     num_false += result.filled[cell] == 0 && coverage.range[cell] > 0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
 #include <vector>
 
 namespace colmap_seapoint {
@@ -110,6 +111,51 @@ TEST(SelectNextStereoFirstTest, NoStripIsLostBetweenTwoPairs) {
   EXPECT_EQ(SelectNextStereoFirst(2, 9, 0.6, jump), 4);
   EXPECT_EQ(SelectNextStereoFirst(4, 9, 0.6, jump), 5);
   EXPECT_EQ(SelectNextStereoFirst(2, 6, 0.6, jump), 4);
+}
+
+// A model of `length` pictures on the track, the last `num_right` of them with a right one.
+SparseModel ModelOf(int length, int num_right, StereoRig* rig) {
+  SparseModel model;
+  for (int i = 0; i < length + num_right; ++i) {
+    PosedImage image;
+    image.name = std::to_string(i);
+    model.images.push_back(image);
+    rig->is_right.push_back(i >= length);
+    rig->right_of.push_back(i >= length - num_right && i < length ? i + num_right : -1);
+  }
+  return model;
+}
+
+TEST(SelectNextTest, SaysWhichPicturesItPassesOver) {
+  StereoRig no_rig;
+  const SparseModel model = ModelOf(9, 0, &no_rig);
+  const Track track(model, no_rig);
+  const NextChoice next = SelectNext(track, 0, 1, 0.59, Advancing(0, 80));
+  EXPECT_EQ(next.position, 3);
+  EXPECT_EQ(next.passed_over, (std::vector<int>{2}));
+  const NextChoice end = SelectNext(track, 0, 8, 0.6, Advancing(0, 80));
+  EXPECT_FALSE(track.CanStartPair(end.position));
+  EXPECT_TRUE(end.passed_over.empty());
+}
+
+TEST(SelectNextTest, SimultaneousPairsGoOnBehindTheirFirstPicture) {
+  StereoRig rig;
+  const SparseModel model = ModelOf(6, 6, &rig);
+  const Track track(model, rig);
+  const NextChoice next = SelectNext(track, 0, track.RightOf(0), 0.5, Advancing(0, 80));
+  EXPECT_EQ(next.position, 3);
+  EXPECT_EQ(next.passed_over, (std::vector<int>{1, 2}));
+}
+
+TEST(SelectNextTest, TheLastPictureAddsItsSimultaneousPair) {
+  StereoRig rig;
+  const SparseModel model = ModelOf(6, 1, &rig);
+  const Track track(model, rig);
+  const auto unasked = [](int) {
+    ADD_FAILURE();
+    return 0.0;
+  };
+  EXPECT_EQ(SelectNext(track, 4, 5, 0.6, unasked).position, 5);
 }
 
 SeaPoint At(double x, double y) {

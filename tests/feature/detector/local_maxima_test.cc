@@ -136,8 +136,7 @@ TEST(LocalMaximaTest, PicturesOfTheWorld) {
       options.nms_radius = 3;
       options.min_num_features = 80;
       options.max_num_features = 100;
-      DetectionSummary summary;
-      const auto points = DetectSeaPoints(picture, GrayImage(), options, 12, &summary);
+      const auto points = DetectSeaPoints(picture, GrayImage(), options, 12).points;
       const auto expected = OracleDetect(picture, GrayImage(), options, 12);
       ASSERT_EQ(points.size(), expected.size());
       for (size_t i = 0; i < points.size(); ++i) {
@@ -145,8 +144,7 @@ TEST(LocalMaximaTest, PicturesOfTheWorld) {
         EXPECT_NEAR(points[i].y, expected[i].y, 1e-4);
       }
       auto same = [&](int num_threads) {
-        const auto again =
-            DetectSeaPoints(picture, GrayImage(), options, 12, &summary, num_threads);
+        const auto again = DetectSeaPoints(picture, GrayImage(), options, 12, num_threads).points;
         ASSERT_EQ(again.size(), points.size());
         EXPECT_EQ(std::memcmp(again.data(), points.data(), points.size() * sizeof(SeaPoint)), 0);
       };

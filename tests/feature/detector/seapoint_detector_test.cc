@@ -142,8 +142,7 @@ TEST(SeaPointDetectorTest, EqualsThePaperWordByWord) {
         options.max_num_features = min_count + 2;
         options.smoothing_sigma = 1;
         options.window_size = 5;
-        DetectionSummary summary;
-        const auto points = DetectSeaPoints(named.picture, GrayImage(), options, 10, &summary);
+        const auto points = DetectSeaPoints(named.picture, GrayImage(), options, 10).points;
         ExpectSamePoints(points, OracleDetect(named.picture, GrayImage(), options, 10));
       }
     }
@@ -158,9 +157,8 @@ TEST(SeaPointDetectorTest, TiesAreInRasterOrder) {
   options.nms_radius = 3;
   options.min_num_features = 1;
   options.max_num_features = 100000;
-  DetectionSummary summary;
   const GrayImage board = Checkerboard(120, 120, 12, 50, 200);
-  const std::vector<SeaPoint> points = DetectSeaPoints(board, GrayImage(), options, 12, &summary);
+  const auto [points, summary] = DetectSeaPoints(board, GrayImage(), options, 12);
   ASSERT_GE(points.size(), 49u);
   EXPECT_EQ(static_cast<int>(points.size()), summary.num_local_maxima);
   for (size_t i = 0; i < points.size(); ++i) {
@@ -170,9 +168,9 @@ TEST(SeaPointDetectorTest, TiesAreInRasterOrder) {
     }
   }
   options.max_num_features = 7;
-  ExpectSamePoints(DetectSeaPoints(board, GrayImage(), options, 12, &summary),
-                   OracleDetect(board, GrayImage(), options, 12));
-  EXPECT_EQ(summary.status, ThresholdStatus::kTied);
+  const Detection tied = DetectSeaPoints(board, GrayImage(), options, 12);
+  ExpectSamePoints(tied.points, OracleDetect(board, GrayImage(), options, 12));
+  EXPECT_EQ(tied.summary.status, ThresholdStatus::kTied);
 }
 
 TEST(SeaPointDetectorTest, OfEqualMaximaTheFirstInRasterOrderStays) {
@@ -188,11 +186,10 @@ TEST(SeaPointDetectorTest, OfEqualMaximaTheFirstInRasterOrderStays) {
     options.window_size = 3;
     options.min_num_features = 1;
     options.max_num_features = 100;
-    DetectionSummary summary;
     options.nms_radius = 4;
-    const auto both = DetectSeaPoints(picture, GrayImage(), options, 10, &summary);
+    const auto both = DetectSeaPoints(picture, GrayImage(), options, 10).points;
     options.nms_radius = 20;
-    const auto one = DetectSeaPoints(picture, GrayImage(), options, 10, &summary);
+    const auto one = DetectSeaPoints(picture, GrayImage(), options, 10).points;
     ASSERT_EQ(one.size(), 1u);
     ASSERT_GE(both.size(), 2u);
     ExpectSamePoints(one, OracleDetect(picture, GrayImage(), options, 10));
@@ -215,8 +212,7 @@ TEST(SeaPointDetectorTest, SubPixelFollowsASmoothSpot) {
       options.light_balance = 0;  // the paper
       options.min_num_features = options.max_num_features = 1;
       options.nms_radius = 10;
-      DetectionSummary summary;
-      const auto points = DetectSeaPoints(picture, GrayImage(), options, 12, &summary);
+      const auto points = DetectSeaPoints(picture, GrayImage(), options, 12).points;
       ASSERT_EQ(points.size(), 1u);
       EXPECT_NEAR(points[0].x, x0, 0.1);
       EXPECT_NEAR(points[0].y, y0, 0.1);
@@ -238,8 +234,7 @@ TEST(SeaPointDetectorTest, BalancedLightFindsWhatLiesInTheDark) {
   std::vector<double> shares;
   for (const double strength : {0.0, 0.5, 1.0}) {
     options.light_balance = strength;
-    DetectionSummary summary;
-    const auto points = DetectSeaPoints(picture, GrayImage(), options, 16, &summary);
+    const auto [points, summary] = DetectSeaPoints(picture, GrayImage(), options, 16);
     EXPECT_EQ(summary.status, ThresholdStatus::kConverged);
     EXPECT_TRUE(points.size() >= 300 && points.size() <= 320) << points.size();
     EXPECT_LE(summary.num_rounds, 6);
@@ -258,11 +253,10 @@ TEST(SeaPointDetectorTest, BalanceLeavesEvenLightAlone) {
   SeaPointExtractionOptions options;
   options.min_num_features = 300;
   options.max_num_features = 320;
-  DetectionSummary summary;
   options.light_balance = 0;
-  const auto plain = DetectSeaPoints(picture, GrayImage(), options, 16, &summary);
+  const auto plain = DetectSeaPoints(picture, GrayImage(), options, 16).points;
   options.light_balance = 0.5;
-  const auto balanced = DetectSeaPoints(picture, GrayImage(), options, 16, &summary);
+  const auto balanced = DetectSeaPoints(picture, GrayImage(), options, 16).points;
   const auto num_kept = std::count_if(plain.begin(), plain.end(), [&](const SeaPoint& point) {
     return std::any_of(balanced.begin(), balanced.end(), [&](const SeaPoint& other) {
       return other.x == point.x && other.y == point.y;
@@ -275,10 +269,9 @@ TEST(SeaPointDetectorTest, FlatPictureHasNone) {
   SeaPointExtractionOptions options;
   options.light_balance = 0;  // the paper
   for (const int level : {0, 127, 255}) {
-    DetectionSummary summary;
-    summary.status = ThresholdStatus::kConverged;
     const GrayImage flat(100, 100, 1, static_cast<uint8_t>(level));
-    EXPECT_TRUE(DetectSeaPoints(flat, GrayImage(), options, 10, &summary).empty());
+    const auto [points, summary] = DetectSeaPoints(flat, GrayImage(), options, 10);
+    EXPECT_TRUE(points.empty());
     EXPECT_EQ(summary.status, ThresholdStatus::kFlat);
     EXPECT_EQ(summary.num_local_maxima, 0);
   }
@@ -287,8 +280,8 @@ TEST(SeaPointDetectorTest, FlatPictureHasNone) {
   for (int y = 0; y < 100; ++y) {
     for (int x = 50; x < 100; ++x) edge.At(x, y) = 220;
   }
-  DetectionSummary summary;
-  EXPECT_TRUE(DetectSeaPoints(edge, GrayImage(), options, 10, &summary).empty());
+  const auto [points, summary] = DetectSeaPoints(edge, GrayImage(), options, 10);
+  EXPECT_TRUE(points.empty());
   EXPECT_EQ(summary.status, ThresholdStatus::kFlat);
 }
 
@@ -306,8 +299,7 @@ TEST(SeaPointDetectorTest, BorderAndMaskKeepPointsOut) {
   const int harris_border =
       HarrisBorder({options.smoothing_sigma, options.window_size, options.harris_k});
   for (const int border : {0, 20, 50}) {
-    DetectionSummary summary;
-    const auto points = DetectSeaPoints(picture, mask, options, border, &summary);
+    const auto points = DetectSeaPoints(picture, mask, options, border).points;
     EXPECT_FALSE(points.empty());
     for (const SeaPoint& point : points) {
       EXPECT_FALSE(point.x >= 60.5 && point.x < 99.5) << point.x;
@@ -317,8 +309,8 @@ TEST(SeaPointDetectorTest, BorderAndMaskKeepPointsOut) {
     ExpectSamePoints(points,
                      OracleDetect(picture, mask, options, std::max(border, harris_border + 1)));
   }
-  DetectionSummary summary;
-  EXPECT_TRUE(DetectSeaPoints(picture, GrayImage(150, 120), options, 0, &summary).empty());
+  const auto [points, summary] = DetectSeaPoints(picture, GrayImage(150, 120), options, 0);
+  EXPECT_TRUE(points.empty());
   EXPECT_EQ(summary.status, ThresholdStatus::kFlat);
 }
 
@@ -326,9 +318,8 @@ TEST(SeaPointDetectorTest, PictureSmallerThanTheBorder) {
   SeaPointExtractionOptions options;
   options.light_balance = 0;  // the paper
   for (const int size : {0, 1, 3, 15, 56}) {
-    DetectionSummary summary;
     const GrayImage picture = RandomPicture(size, size, 7);
-    EXPECT_TRUE(DetectSeaPoints(picture, GrayImage(), options, 28, &summary).empty()) << size;
+    EXPECT_TRUE(DetectSeaPoints(picture, GrayImage(), options, 28).points.empty()) << size;
   }
 }
 

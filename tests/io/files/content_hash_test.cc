@@ -12,9 +12,19 @@ namespace {
 
 // The reference values of XXH3_64bits with seed 0, from the algorithm's own description.
 TEST(ContentHash, IsXxh3) {
-  EXPECT_EQ(HashText(""), "2d06800538d394c2");
-  EXPECT_EQ(HashText("a"), "e6c632b61e964e1f");
-  EXPECT_EQ(HashText("abc"), "78af5f94892f3950");
+  EXPECT_EQ(HashText(""), "xxh3-2d06800538d394c2");
+  EXPECT_EQ(HashText("a"), "xxh3-e6c632b61e964e1f");
+  EXPECT_EQ(HashText("abc"), "xxh3-78af5f94892f3950");
+}
+
+// Databases that version 0.1 wrote hold FNV-1a; its reference values.
+TEST(ContentHash, ThatOfVersion01IsKnown) {
+  EXPECT_TRUE(IsHashOf("cbf29ce484222325", "", 0));
+  EXPECT_TRUE(IsHashOf("85944171f73967e8", "foobar", 6));
+  EXPECT_FALSE(IsHashOf("85944171f73967e8", "foobaR", 6));
+  EXPECT_TRUE(IsHashOf(HashText("foobar"), "foobar", 6));
+  EXPECT_FALSE(IsHashOf(HashText("foobar"), "foobaR", 6));
+  EXPECT_FALSE(IsHashOf("", "foobar", 6));
 }
 
 TEST(ContentHash, DoesNotDependOnHowTheBytesAreCut) {
@@ -25,7 +35,7 @@ TEST(ContentHash, DoesNotDependOnHowTheBytesAreCut) {
     for (size_t i = 0; i < text.size(); i += piece) {
       hash.Add(text.data() + i, std::min(piece, text.size() - i));
     }
-    EXPECT_EQ(hash.Hex(), HashText(text)) << piece;
+    EXPECT_EQ(hash.Text(), HashText(text)) << piece;
   }
 }
 

@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "colmap_seapoint/io/files/content_hash.h"
 #include "tests/io/test_files.h"
 
 namespace colmap_seapoint {
@@ -30,6 +31,33 @@ void AddExif(const std::filesystem::path& path,
   image->readMetadata();
   for (const auto& [key, value] : tags) image->exifData()[key] = value;
   image->writeMetadata();
+}
+
+TEST(PictureFile, HashAndPixelsComeFromTheSameBytes) {
+  const TempDir dir;
+  const auto path = dir / "a.png";
+  WriteImage(path, MakeColor(60, 40));
+  const PictureFile file(path);
+  const std::string hash = HashFile(path);
+  WriteBytes(path, "replaced meanwhile");
+  EXPECT_EQ(file.Hash(), hash);
+  EXPECT_NE(HashFile(path), hash);
+  EXPECT_EQ(file.DecodeColor().data, MakeColor(60, 40).data);
+}
+
+TEST(PictureFile, EveryFormatDecodesAgainAndAgain) {
+  const TempDir dir;
+  for (const char* name : {"a.jpg", "a.png", "a.tif", "a.bmp", "a.ppm", "a.webp", "a.jp2"}) {
+    WriteImage(dir / name, MakeColor(60, 40));
+    const PictureFile file(dir / name);
+    EXPECT_EQ(file.Size(), std::filesystem::file_size(dir / name)) << name;
+    EXPECT_EQ(file.Hash(), HashFile(dir / name)) << name;
+    const GrayImage gray = file.DecodeGray();
+    EXPECT_EQ(gray.width, 60) << name;
+    EXPECT_EQ(gray.data, file.Decode().luma.data) << name;
+    EXPECT_EQ(gray.data, ReadGrayImage(dir / name).data) << name;
+    EXPECT_EQ(file.DecodeColor().data, ReadColorImage(dir / name).data) << name;
+  }
 }
 
 TEST(IsSafeImageName, Table) {

@@ -5,11 +5,14 @@
 
 #include "colmap_seapoint/base/features.h"
 #include "colmap_seapoint/base/picture.h"
-#include "densify/densify_pair.h"
-#include "densify/densify_sequence.h"
+#include "densify/match/cell_grid.h"
+#include "densify/match/view.h"
 #include "densify/overlap/influence_mask.h"
+#include "densify/sequence_report.h"
 
 namespace colmap_seapoint {
+
+struct PairResult;
 
 // Valid during the call that hands it over. "Previous" is the first picture of the pair before (V
 // of the paper; picture 1 of this pair is V + 2).
@@ -30,17 +33,13 @@ struct PairDebug {
   double influence_radius1 = 0;  // pixels of picture 1
   double influence_radius0 = 0;  // pixels of the previous picture
 
-  // Cells of picture 1 that were known before (ours, redundancy "all"): their range, 0 elsewhere.
-  CellGrid cells;
-  std::vector<float> covered_range;
+  KnownCells known;  // of picture 1; covered ranges: redundancy "all" (ours)
 
   const PairResult* partial = nullptr;
+  const PairResult* normal = nullptr;  // what the pair gives when nothing counts as done before
+  // Pixels of picture 1: the seeds in new areas whose own cell holds less than a tenth of its
+  // disparities.
   std::vector<Eigen::Vector2d> failed_seeds;
-  PairResult normal;  // what the pair gives when nothing counts as done before
 };
-
-// The seeds in areas that are new whose own cell holds less than a tenth of its disparities; pixels
-// of picture 1.
-std::vector<Eigen::Vector2d> FailedSeeds(const PairInput& input, const PairResult& result);
 
 }  // namespace colmap_seapoint

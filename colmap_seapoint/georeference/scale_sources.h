@@ -1,0 +1,28 @@
+// Where a model's size and place are known from: tables of scale bars, targets and positions, the
+// spacing of a rig.
+#pragma once
+
+#include <string>
+
+#include "colmap_seapoint/base/options.h"
+
+namespace colmap_seapoint {
+
+// The ranges and the tables' columns stand in the .cc file, where each field is bound to its
+// option.
+struct ScaleSources {
+  std::string scale_bars_path;  // CSV of known lengths, metres; empty = none
+  std::string targets_path;     // CSV of the targets' marks in the pictures; empty = none
+  std::string positions_path;   // CSV of the cameras' positions; empty = none
+  std::string crs;              // "EPSG:32755"; empty = east, north, up of the place
+  double rig_spacing = 0;       // between the two cameras of a rig, metres; 0 = unknown
+  double length_sigma = 0.001;  // of lengths that do not give theirs, metres
+  double max_target_error = 4;  // of a mark that is used, pixels
+
+  void Bind(OptionTable* table);
+  bool Any() const;
+  // "", or the whole sentence about options that do not go together.
+  std::string Check() const;
+};
+
+}  // namespace colmap_seapoint

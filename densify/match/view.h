@@ -1,0 +1,22 @@
+// A posed picture, and what two of them show of one place: plain types that all rooms share.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "colmap_seapoint/base/camera.h"
+#include "colmap_seapoint/base/rigid3.h"
+
+namespace colmap_seapoint {
+
+struct View {
+  int image_idx = -1;  // place in SparseModel::images
+  Camera camera;
+  Rigid3d cam_from_world;
+};
+
+// A pixel of picture 1 and the pixel of picture 2 that shows the same place.
+struct PixelPair {
+  Eigen::Vector2d pixel1, pixel2;
+};
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,97 @@
+#include "colmap_seapoint/mapping/retriangulate.h"
+
+#include <gtest/gtest.h>
+
+#include <iterator>
+
+#include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "tests/io/test_files.h"
+#include "tests/mapping/exact_survey.h"
+#include "tests/mapping/scripted_colmap.h"
+
+namespace colmap_seapoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kTriangulator[] = "point_triangulator";
+
+class RetriangulateTest : public testing::Test {
+ protected:
+  RetriangulateTest() { WriteSparseModelBinary(folder_, before_); }
+
+  Triangulation Run(const MapperOptions& options = {}) {
+    return Retriangulate(colmap_.Program(),
+                         {dir_ / "database.db", dir_ / "images", options, dir_ / "lens"}, folder_,
+                         before_);
+  }
+
+  // The model without its last pictures and points.
+  SparseModel Without(size_t num_images, size_t num_points) const {
+    SparseModel model = before_;
+    model.images.resize(model.images.size() - num_images);
+    for (size_t i = 0; i < num_points; ++i) model.points3D.erase(std::prev(model.points3D.end()));
+    for (auto& [id, point] : model.points3D) point.track.clear();
+    for (PosedImage& image : model.images) {
+      image.points2D.clear();
+      image.point3D_ids.clear();
+    }
+    return model;
+  }
+
+  TempDir dir_;
+  const fs::path folder_ = dir_ / "model";
+  ScriptedColmap colmap_{dir_ / "bin"};
+  const SparseModel before_ = ExactSurvey(ExactLens(), 3);
+};
+
+TEST_F(RetriangulateTest, ReturnsWhatColmapLeftAndTouchesNothing) {
+  const std::string bytes = ReadBytes(folder_ / "points3D.bin");
+  colmap_.Leaves(kTriangulator, 1, "", Without(0, before_.points3D.size() / 2));
+  const Triangulation result = Run();
+  ASSERT_TRUE(result.model);
+  EXPECT_EQ(result.fault, "");
+  EXPECT_EQ(result.model->points3D.size(), (before_.points3D.size() + 1) / 2);
+  EXPECT_EQ(ReadBytes(folder_ / "points3D.bin"), bytes);
+  EXPECT_FALSE(fs::exists(folder_.string() + ".triangulated"));
+}
+
+TEST_F(RetriangulateTest, LostPicturesOrPointsAreRefused) {
+  colmap_.Leaves(kTriangulator, 1, "", Without(1, 0));
+  colmap_.Leaves(kTriangulator, 2, "", Without(0, before_.points3D.size() / 2 + 1));
+  Triangulation result = Run();
+  EXPECT_FALSE(result.model);
+  EXPECT_EQ(result.fault, "pictures were lost");
+  result = Run();
+  EXPECT_FALSE(result.model);
+  EXPECT_EQ(result.fault, "points were lost");
+}
+
+TEST_F(RetriangulateTest, AProgramThatFailsOrLeavesNothingIsRefused) {
+  colmap_.Ends(kTriangulator, 1, "cannot", 3);
+  colmap_.Ends(kTriangulator, 2, "", 0);
+  EXPECT_EQ(Run().fault, "the triangulation failed (exit code 3)");
+  EXPECT_NE(ReadBytes(dir_ / "lens_triangulation.log").find("cannot"), std::string::npos);
+  EXPECT_EQ(Run().fault, "the triangulation failed (exit code 0)");
+  EXPECT_FALSE(fs::exists(folder_.string() + ".triangulated"));
+}
+
+TEST_F(RetriangulateTest, LeftoversOfAnEarlierRunDoNotCount) {
+  WriteSparseModelBinary(folder_.string() + ".triangulated", before_);
+  colmap_.Ends(kTriangulator, 1, "", 0);
+  EXPECT_FALSE(Run().model);
+}
+
+TEST_F(RetriangulateTest, ErrorLimitsUnlessTheUserGivesThem) {
+  Run();
+  EXPECT_EQ(colmap_.Value(kTriangulator, 1, "clear_points"), "1");
+  EXPECT_EQ(colmap_.Value(kTriangulator, 1, "Mapper.filter_max_reproj_error"), "1.5");
+  // This COLMAP does not know the other two limits.
+  EXPECT_EQ(colmap_.Value(kTriangulator, 1, "Mapper.tri_merge_max_reproj_error"), "");
+  Run({{"Mapper.filter_max_reproj_error", "2.5"}, {"Mapper.num_threads", "1"}});
+  EXPECT_EQ(colmap_.Value(kTriangulator, 2, "Mapper.filter_max_reproj_error"), "2.5");
+  EXPECT_EQ(colmap_.Value(kTriangulator, 2, "Mapper.num_threads"), "1");
+}
+
+}  // namespace
+}  // namespace colmap_seapoint

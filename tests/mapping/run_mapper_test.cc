@@ -1,0 +1,324 @@
+// The rounds of the mapper against a COLMAP whose every answer is written down beforehand.
+#include "colmap_seapoint/mapping/run_mapper.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "tests/io/test_files.h"
+#include "tests/mapping/exact_survey.h"
+#include "tests/mapping/scripted_colmap.h"
+
+namespace colmap_seapoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kMapper[] = "mapper";
+constexpr char kGlobal[] = "global_mapper";
+constexpr char kRefine[] = "Mapper.ba_refine_extra_params";
+
+class RunMapperTest : public testing::Test {
+ protected:
+  RunMapperTest() {
+    fs::create_directories(dir_ / "logs");
+    job_.database_path = dir_ / "database.db";
+    job_.image_path = dir_ / "images";
+    job_.output_path = dir_ / "sparse";
+    job_.log_folder = dir_ / "logs";
+    job_.first_round = {{"Mapper.num_threads", "1"}};
+    job_.later_rounds = {{"Mapper.num_threads", "1"}, {"Mapper.min_model_size", "4"}};
+    job_.finds_lens = false;
+    for (const PosedImage& image : survey_.images) job_.pictures.push_back(image.name);
+  }
+
+  // Pictures `first` to `last` (from 1) of the survey, all that they see moved by `shift` pixels.
+  SparseModel Part(int first, int last, double shift = 0) const {
+    SparseModel part = survey_;
+    part.images.clear();
+    std::set<uint32_t> ids;
+    for (PosedImage image : survey_.images) {
+      if (static_cast<int>(image.image_id) < first || static_cast<int>(image.image_id) > last) {
+        continue;
+      }
+      for (Eigen::Vector2d& pixel : image.points2D) pixel.x() += shift;
+      ids.insert(image.image_id);
+      part.images.push_back(image);
+    }
+    for (auto& [id, point] : part.points3D) {
+      std::vector<SparsePoint::TrackElement> track;
+      for (const auto& element : point.track) {
+        if (ids.count(element.image_id) > 0) track.push_back(element);
+      }
+      point.track = track;
+    }
+    return part;
+  }
+
+  // Its first points alone.
+  static SparseModel OfFewPoints(SparseModel model, uint64_t num_points) {
+    model.points3D.erase(model.points3D.upper_bound(num_points), model.points3D.end());
+    for (PosedImage& image : model.images) {
+      for (uint64_t& id : image.point3D_ids) {
+        if (id != kNoPoint3D && id > num_points) id = kNoPoint3D;
+      }
+    }
+    return model;
+  }
+
+  void Run() { RunMapper(colmap_.Program(), job_); }
+
+  // Names of the pictures of a model of the result.
+  std::set<std::string> NamesIn(const std::string& model) const {
+    std::set<std::string> names;
+    for (const PosedImage& image : ReadSparseModel(job_.output_path / model).images) {
+      names.insert(image.name);
+    }
+    return names;
+  }
+
+  size_t NumModels() const { return ListModels(job_.output_path).size(); }
+
+  TempDir dir_;
+  ScriptedColmap colmap_{dir_ / "bin"};
+  const SparseModel survey_ = ExactSurvey(ExactLens(), 5);
+  MapperJob job_;
+};
+
+TEST_F(RunMapperTest, OneRoundThatFindsAll) {
+  colmap_.Leaves(kMapper, 1, "0", survey_);
+  Run();
+  EXPECT_EQ(colmap_.NumCalls(kMapper), 1);
+  EXPECT_EQ(NumModels(), 1u);
+  EXPECT_EQ(NamesIn("0").size(), 10u);
+  EXPECT_FALSE(fs::exists(dir_ / "sparse.tmp"));
+  EXPECT_TRUE(fs::exists(dir_ / "logs" / "mapper_1.log"));
+  // All pictures: no list. The folder is the trial's own.
+  EXPECT_EQ(colmap_.Arguments(kMapper, 1),
+            (std::vector<std::string>{"mapper", "--database_path", (dir_ / "database.db").string(),
+                                      "--image_path", (dir_ / "images").string(), "--output_path",
+                                      (dir_ / "sparse.tmp" / "trial_1").string(),
+                                      "--Mapper.num_threads", "1"}));
+  // Nothing else is left beside the model.
+  for (const auto& entry : fs::directory_iterator(job_.output_path)) {
+    EXPECT_EQ(entry.path().filename(), "0");
+  }
+}
+
+TEST_F(RunMapperTest, LeftoversOfEarlierRunsAreRemoved) {
+  WriteSparseModelBinary(dir_ / "sparse" / "7", survey_);
+  WriteSparseModelBinary(dir_ / "sparse.tmp" / "trial_1" / "3", survey_);
+  colmap_.Leaves(kMapper, 1, "0", survey_);
+  Run();
+  EXPECT_EQ(NumModels(), 1u);
+  EXPECT_FALSE(fs::exists(job_.output_path / "7"));
+}
+
+TEST_F(RunMapperTest, LaterRoundsLookForTheMissingAndNumberTheirModelsOn) {
+  colmap_.Leaves(kMapper, 1, "0", Part(1, 4));
+  colmap_.Leaves(kMapper, 2, "0", Part(5, 7));
+  colmap_.Leaves(kMapper, 3, "0", Part(8, 10));
+  Run();
+  EXPECT_EQ(colmap_.NumCalls(kMapper), 3);
+  EXPECT_EQ(colmap_.ImageList(kMapper, 1), "");
+  EXPECT_EQ(colmap_.ImageList(kMapper, 2),
+            "img10.jpg\nimg5.jpg\nimg6.jpg\nimg7.jpg\nimg8.jpg\nimg9.jpg\n");
+  EXPECT_EQ(colmap_.ImageList(kMapper, 3), "img10.jpg\nimg8.jpg\nimg9.jpg\n");
+  EXPECT_EQ(colmap_.Value(kMapper, 1, "Mapper.min_model_size"), "");
+  EXPECT_EQ(colmap_.Value(kMapper, 2, "Mapper.min_model_size"), "4");
+  EXPECT_EQ(NumModels(), 3u);
+  EXPECT_EQ(NamesIn("0"), (std::set<std::string>{"img1.jpg", "img2.jpg", "img3.jpg", "img4.jpg"}));
+  EXPECT_EQ(NamesIn("1"), (std::set<std::string>{"img5.jpg", "img6.jpg", "img7.jpg"}));
+  EXPECT_EQ(NamesIn("2"), (std::set<std::string>{"img10.jpg", "img8.jpg", "img9.jpg"}));
+}
+
+TEST_F(RunMapperTest, ARoundThatFindsNothingIsTheLast) {
+  colmap_.Leaves(kMapper, 1, "0", Part(1, 5));
+  Run();
+  EXPECT_EQ(colmap_.NumCalls(kMapper), 2);
+  EXPECT_EQ(NumModels(), 1u);
+}
+
+TEST_F(RunMapperTest, TwoMissingPicturesAreNotWorthARound) {
+  colmap_.Leaves(kMapper, 1, "0", Part(1, 8));
+  Run();
+  EXPECT_EQ(colmap_.NumCalls(kMapper), 1);
+}
+
+TEST_F(RunMapperTest, NoMoreThanFiveRounds) {
+  for (int call = 1; call <= 7; ++call) colmap_.Leaves(kMapper, call, "0", Part(call, call));
+  Run();
+  EXPECT_EQ(colmap_.NumCalls(kMapper), 5);
+  EXPECT_EQ(NumModels(), 5u);
+}
+
+TEST_F(RunMapperTest, AllModelsOfARoundCountButThoseOfAHandfulOfPoints) {
+  colmap_.Leaves(kMapper, 1, "0", Part(1, 5));
+  colmap_.Leaves(kMapper, 1, "1", OfFewPoints(Part(6, 8), 49));
+  colmap_.Leaves(kMapper, 1, "10", Part(6, 10));
+  Run();
+  EXPECT_EQ(NumModels(), 2u);
+  EXPECT_EQ(NamesIn("1").size(), 5u);
+  EXPECT_EQ(colmap_.NumCalls(kMapper), 1);
+}
+
+TEST_F(RunMapperTest, ModelsThatColmapDropsAsSmallAreBetterThanNone) {
+  colmap_.Ends(kMapper, 1, "ERROR: failed to create sparse model", 1);
+  colmap_.Leaves(kMapper, 3, "0", Part(1, 3));
+  Run();
+  EXPECT_EQ(colmap_.Value(kMapper, 2, "Mapper.min_model_size"), "4");
+  EXPECT_EQ(colmap_.Value(kMapper, 3, "Mapper.min_model_size"), "3");
+  EXPECT_EQ(NamesIn("0").size(), 3u);
+  EXPECT_TRUE(fs::exists(dir_ / "logs" / "mapper_small_models.log"));
+}
+
+TEST_F(RunMapperTest, NoModelAtAllIsAnErrorThatNamesTheLog) {
+  colmap_.Ends(kMapper, 1, "ERROR: failed to create sparse model", 1);
+  const std::string text = ErrorOf([&] { Run(); });
+  EXPECT_NE(text.find("the mapper found no model"), std::string::npos) << text;
+  EXPECT_NE(text.find((dir_ / "logs" / "mapper_1.log").string()), std::string::npos) << text;
+  EXPECT_FALSE(fs::exists(job_.output_path));
+}
+
+TEST_F(RunMapperTest, AMapperThatFailsWithAModelIsNotTrusted) {
+  colmap_.Leaves(kMapper, 1, "0", survey_);
+  colmap_.Ends(kMapper, 1, "disk full", 2);
+  const std::string text = ErrorOf([&] { Run(); });
+  EXPECT_NE(text.find("the mapper failed (exit code 2, 'disk full')"), std::string::npos) << text;
+  EXPECT_FALSE(fs::exists(job_.output_path));
+}
+
+TEST_F(RunMapperTest, AFailureInALaterRoundLeavesWhatWasFound) {
+  colmap_.Leaves(kMapper, 1, "0", Part(1, 5));
+  colmap_.Leaves(kMapper, 2, "0", Part(6, 10));
+  colmap_.Ends(kMapper, 2, "disk full", 2);
+  testing::internal::CaptureStderr();
+  Run();
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("the mapper failed (exit code 2, 'disk full')"), std::string::npos) << said;
+  EXPECT_EQ(NumModels(), 1u);
+}
+
+TEST_F(RunMapperTest, ARefusedValueIsAFaultOfTheCommandLine) {
+  colmap_.Ends(kMapper, 1, "ERROR: Failed to parse options - the argument ('x') is invalid", 1);
+  EXPECT_THROW(Run(), UsageError);
+  colmap_.Ends(kMapper, 2, "Invalid options provided.", 1);
+  EXPECT_THROW(Run(), UsageError);
+}
+
+TEST_F(RunMapperTest, TheDistortionIsHeldAndThenFreedWherePicturesAreLeftOver) {
+  job_.finds_lens = true;
+  colmap_.Leaves(kMapper, 1, "0", Part(1, 6));
+  colmap_.Leaves(kMapper, 2, "0", survey_);
+  Run();
+  ASSERT_EQ(colmap_.NumCalls(kMapper), 2);
+  EXPECT_EQ(colmap_.Value(kMapper, 1, kRefine), "0");
+  EXPECT_EQ(colmap_.Value(kMapper, 2, kRefine), "");
+  EXPECT_EQ(NumModels(), 1u);
+  EXPECT_EQ(NamesIn("0").size(), 10u);
+  EXPECT_TRUE(fs::exists(dir_ / "logs" / "mapper_1_free_distortion.log"));
+  // The triangulator gets the trial's own options.
+  EXPECT_EQ(colmap_.Value("point_triangulator", 1, kRefine), "0");
+  EXPECT_EQ(colmap_.Value("point_triangulator", 2, kRefine), "");
+}
+
+TEST_F(RunMapperTest, OfTwoTrialsTheOneWithMorePicturesCounts) {
+  job_.finds_lens = true;
+  colmap_.Leaves(kMapper, 1, "0", Part(1, 9, 1.0));  // the worse error does not matter
+  colmap_.Leaves(kMapper, 2, "0", Part(1, 8));
+  Run();
+  EXPECT_EQ(NamesIn("0").size(), 9u);
+}
+
+TEST_F(RunMapperTest, OfTrialsWithAsManyPicturesTheSmallerErrorCounts) {
+  job_.finds_lens = true;
+  SparseModel noisy = Part(1, 9);
+  for (PosedImage& image : noisy.images) {
+    for (size_t i = 0; i < image.points2D.size(); ++i) {
+      image.points2D[i].y() += i % 2 == 0 ? 1 : -1;
+    }
+  }
+  colmap_.Leaves(kMapper, 1, "0", noisy);
+  colmap_.Leaves(kMapper, 2, "0", Part(1, 9));
+  Run();
+  EXPECT_LT(ReadSparseModel(job_.output_path / "0").points3D.at(1).error, 0.01);
+}
+
+TEST_F(RunMapperTest, ALensThatIsNotSoundIsDoubtfulToo) {
+  job_.finds_lens = true;
+  Camera lens = ExactLens();
+  lens.params[2] += 90;  // farther from the centre than an adjustment may find it
+  colmap_.Leaves(kMapper, 1, "0", Disturbed(ExactSurvey(lens, 5)));
+  colmap_.Leaves(kMapper, 2, "0", survey_);
+  Run();
+  ASSERT_EQ(colmap_.NumCalls(kMapper), 2);
+  EXPECT_LT(LargestDifference(ReadSparseModel(job_.output_path / "0").cameras.at(1), ExactLens()),
+            0.01);
+}
+
+TEST_F(RunMapperTest, AFailureOfTheSecondTrialLeavesTheFirst) {
+  job_.finds_lens = true;
+  colmap_.Leaves(kMapper, 1, "0", Part(1, 9));
+  colmap_.Leaves(kMapper, 2, "0", Part(1, 9));
+  colmap_.Ends(kMapper, 2, "out of memory", 1);
+  testing::internal::CaptureStderr();
+  Run();
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("out of memory"), std::string::npos);
+  EXPECT_EQ(NamesIn("0").size(), 9u);
+}
+
+class GlobalRound : public RunMapperTest {
+ protected:
+  GlobalRound() {
+    colmap_.SetHelp(MapperHelp("COLMAP 4.0 (scripted)", {"Mapper.num_threads"}),
+                    "  global_mapper\n  mapper\n", "  --GlobalMapper.num_threads arg (=-1)\n");
+    job_.global_round = MapperOptions{{"GlobalMapper.num_threads", "1"}};
+  }
+};
+
+TEST_F(GlobalRound, ThatFindsAllIsEnough) {
+  colmap_.Leaves(kGlobal, 1, "0", survey_);
+  Run();
+  EXPECT_EQ(colmap_.NumCalls(kMapper), 0);
+  EXPECT_EQ(colmap_.Value(kGlobal, 1, "GlobalMapper.num_threads"), "1");
+  EXPECT_EQ(colmap_.Value(kGlobal, 1, "Mapper.num_threads"), "");
+  EXPECT_TRUE(fs::exists(dir_ / "logs" / "mapper_1_global.log"));
+}
+
+TEST_F(GlobalRound, ThatLeavesPicturesOutIsComparedWithTheFirstRound) {
+  colmap_.Leaves(kGlobal, 1, "0", Part(1, 8));
+  colmap_.Leaves(kMapper, 1, "0", Part(1, 6));
+  Run();
+  EXPECT_EQ(colmap_.NumCalls(kMapper), 1);
+  EXPECT_EQ(NamesIn("0").size(), 8u);
+}
+
+TEST_F(GlobalRound, ThatIsWorseGivesWay) {
+  colmap_.Leaves(kGlobal, 1, "0", Part(1, 8));
+  colmap_.Leaves(kMapper, 1, "0", survey_);
+  Run();
+  EXPECT_EQ(NamesIn("0").size(), 10u);
+  EXPECT_EQ(NumModels(), 1u);
+}
+
+TEST_F(GlobalRound, ThatFailsCostsNothing) {
+  colmap_.Ends(kGlobal, 1, "no", 1);
+  colmap_.Leaves(kMapper, 1, "0", survey_);
+  Run();
+  EXPECT_EQ(NamesIn("0").size(), 10u);
+}
+
+TEST(ListModelsTest, InNaturalOrderAndModelsOnly) {
+  TempDir dir;
+  EXPECT_TRUE(ListModels(dir / "nothing").empty());
+  EXPECT_TRUE(ListModels(dir.Path()).empty());
+  const SparseModel model = ExactSurvey(ExactLens(), 2);
+  for (const char* name : {"10", "2", "0"}) WriteSparseModelBinary(dir / name, model);
+  fs::create_directories(dir / "1");
+  WriteBytes(dir / "3", "a file");
+  EXPECT_EQ(ListModels(dir.Path()), (std::vector<fs::path>{dir / "0", dir / "2", dir / "10"}));
+}
+
+}  // namespace
+}  // namespace colmap_seapoint

@@ -1,0 +1,241 @@
+#include "colmap_seapoint/pipeline/scale_models.h"
+
+#include <gtest/gtest.h>
+
+#include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "tests/expect_error.h"
+#include "tests/pipeline/strip_survey.h"
+
+namespace colmap_seapoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kNumPictures = 3;  // of each model
+
+// Models WS/sparse/<k> of the pictures <letter>1.png, <letter>2.png ..., without pictures.
+class ScaleModelsTest : public StripSurvey {
+ protected:
+  Workspace Space() const { return Workspace(Images().string(), (folder_ / "ws").string()); }
+
+  std::vector<ModelSummary> WriteModels(const std::string& letters) const {
+    std::vector<ModelSummary> models;
+    for (const char letter : letters) {
+      ModelSummary model;
+      model.name = std::to_string(models.size());
+      model.path = Space().sparse / model.name;
+      WriteSparseModelBinary(model.path, StripModel(kNumPictures, std::string(1, letter)));
+      models.push_back(model);
+    }
+    return models;
+  }
+
+  // Places of the pictures of these models, `metres` apart.
+  ModelScalerOptions Positions(const std::string& letters, int metres = 2) const {
+    std::string text = "image,x,y,z\n";
+    for (const char letter : letters) {
+      for (int i = 1; i <= kNumPictures; ++i) {
+        text += std::string(1, letter) + std::to_string(i) + ".png," + std::to_string(metres * i) +
+                ",0,-5\n";
+      }
+    }
+    ModelScalerOptions scaler;
+    scaler.sources.positions_path = Write("positions.csv", text);
+    return scaler;
+  }
+
+  RunReport Scale(const ModelScalerOptions& scaler, std::vector<ModelSummary>* models,
+                  const std::string& mapper_fingerprint = "mapper") const {
+    WorkspaceState state(Space().root);
+    return ScaleAllModels(scaler, Space(), mapper_fingerprint, &state, models);
+  }
+
+  // Between the places of the first two pictures.
+  double Spacing(int k) const {
+    const SparseModel model = ReadSparseModel(Space().scaled / std::to_string(k));
+    return (model.images[1].cam_from_world.OriginInSource() -
+            model.images[0].cam_from_world.OriginInSource())
+        .norm();
+  }
+  // Leaves a mark in a scaled model that is gone when it is made anew.
+  void Mark(int k) const { WriteBytes(Space().scaled / std::to_string(k) / "mark", ""); }
+  bool IsMarked(int k) const { return fs::exists(Space().scaled / std::to_string(k) / "mark"); }
+};
+
+TEST_F(ScaleModelsTest, WithoutSourcesNothingHappens) {
+  std::vector<ModelSummary> models = WriteModels("ab");
+  const RunReport report = Scale({}, &models);
+  EXPECT_TRUE(report.stages.empty());
+  EXPECT_TRUE(report.left_out.empty());
+  EXPECT_FALSE(fs::exists(Space().scaled));
+  for (const ModelSummary& model : models) {
+    EXPECT_EQ(model.path, Space().sparse / model.name);
+    EXPECT_EQ(model.units, "units arbitrary");
+    EXPECT_EQ(model.units_word, "arbitrary");
+    EXPECT_EQ(model.scaling, "");
+    EXPECT_EQ(model.scaling_fingerprint, "");
+  }
+}
+
+TEST_F(ScaleModelsTest, EveryModelIsScaledBesideTheMappers) {
+  std::vector<ModelSummary> models = WriteModels("ab");
+  const auto before = ReadTree(Space().sparse);
+  const RunReport report = Scale(Positions("ab"), &models);
+  EXPECT_TRUE(report.left_out.empty());
+  ASSERT_EQ(report.stages.size(), 2u);
+  EXPECT_EQ(report.stages[0].name, "model_scaler 0");
+  EXPECT_EQ(report.stages[1].name, "model_scaler 1");
+  for (const ModelSummary& model : models) {
+    EXPECT_EQ(model.path, Space().scaled / model.name);
+    EXPECT_EQ(model.units.rfind("metres, local", 0), 0u) << model.units;
+    EXPECT_EQ(model.units_word, "metres");
+    EXPECT_EQ(model.scaling.rfind("scale ", 0), 0u) << model.scaling;
+    EXPECT_EQ(model.scaling_fingerprint.size(), 21u);
+  }
+  EXPECT_NEAR(Spacing(0), 2, 1e-6);
+  EXPECT_NEAR(Spacing(1), 2, 1e-6);
+  EXPECT_EQ(ReadTree(Space().sparse), before);
+}
+
+TEST_F(ScaleModelsTest, OneThatCannotBeScaledStaysAndIsNamed) {
+  std::vector<ModelSummary> models = WriteModels("ab");
+  const RunReport report = Scale(Positions("b"), &models);
+  ASSERT_EQ(NamesOf(report.left_out), std::vector<std::string>{"scale of sparse/0"});
+  EXPECT_EQ(report.left_out[0].reason.rfind("its units stay arbitrary: ", 0), 0u);
+  EXPECT_NE(report.left_out[0].reason.find("none of its pictures is in the model"),
+            std::string::npos)
+      << report.left_out[0].reason;
+  EXPECT_EQ(models[0].path, Space().sparse / "0");
+  EXPECT_EQ(models[0].units_word, "arbitrary");
+  EXPECT_EQ(models[0].scaling, "");
+  EXPECT_FALSE(fs::exists(Space().scaled / "0"));
+  EXPECT_EQ(models[1].path, Space().scaled / "1");
+  EXPECT_EQ(models[1].units_word, "metres");
+  EXPECT_NEAR(Spacing(1), 2, 1e-6);
+}
+
+TEST_F(ScaleModelsTest, OneThatCannotBeScaledAnyMoreLosesItsOldScale) {
+  std::vector<ModelSummary> models = WriteModels("ab");
+  Scale(Positions("ab"), &models);
+  models = WriteModels("ab");
+  const RunReport report = Scale(Positions("a"), &models);
+  EXPECT_EQ(NamesOf(report.left_out), std::vector<std::string>{"scale of sparse/1"});
+  EXPECT_EQ(models[1].path, Space().sparse / "1");
+  EXPECT_FALSE(fs::exists(Space().scaled / "1"));
+}
+
+TEST_F(ScaleModelsTest, NoneThatCanBeScaledIsAnError) {
+  std::vector<ModelSummary> models = WriteModels("ab");
+  EXPECT_ERROR(Scale(Positions("c"), &models), "none of its pictures is in the model");
+  EXPECT_EQ(models[0].path, Space().sparse / "0");
+}
+
+TEST_F(ScaleModelsTest, IsDoneOnce) {
+  std::vector<ModelSummary> models = WriteModels("ab");
+  const RunReport first = Scale(Positions("ab"), &models);
+  const std::vector<ModelSummary> scaled = models;
+  Mark(0);
+  models = WriteModels("ab");
+  RunReport second;
+  const std::string log = LogOf([&] { second = Scale(Positions("ab"), &models); });
+  EXPECT_NE(log.find("The scaled model in " + (Space().scaled / "1").string()), std::string::npos)
+      << log;
+  EXPECT_TRUE(IsMarked(0));
+  ASSERT_EQ(second.stages.size(), 2u);
+  EXPECT_EQ(second.stages[0].name, "model_scaler 0");
+  EXPECT_EQ(second.stages[0].wall_seconds, first.stages[0].wall_seconds);
+  for (size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(models[k].path, scaled[k].path);
+    EXPECT_EQ(models[k].units, scaled[k].units);
+    EXPECT_EQ(models[k].scaling, scaled[k].scaling);
+    EXPECT_EQ(models[k].scaling_fingerprint, scaled[k].scaling_fingerprint);
+  }
+}
+
+TEST_F(ScaleModelsTest, IsDoneAgainWhenItsInputsChange) {
+  std::vector<ModelSummary> models = WriteModels("a");
+  Scale(Positions("a"), &models);
+  const std::string first = models[0].scaling_fingerprint;
+  // The table's content, not its name.
+  Mark(0);
+  models = WriteModels("a");
+  Scale(Positions("a", 3), &models);
+  EXPECT_FALSE(IsMarked(0));
+  EXPECT_NEAR(Spacing(0), 3, 1e-6);
+  EXPECT_NE(models[0].scaling_fingerprint, first);
+  // The models themselves.
+  Mark(0);
+  models = WriteModels("a");
+  Scale(Positions("a", 3), &models, "another mapper");
+  EXPECT_FALSE(IsMarked(0));
+  // An output that is gone.
+  Mark(0);
+  fs::remove(Space().scaled / "0/scale.json");
+  models = WriteModels("a");
+  Scale(Positions("a", 3), &models, "another mapper");
+  EXPECT_FALSE(IsMarked(0));
+  EXPECT_TRUE(fs::exists(Space().scaled / "0/scale.json"));
+}
+
+TEST_F(ScaleModelsTest, WithoutSourcesTheFolderGoes) {
+  std::vector<ModelSummary> models = WriteModels("ab");
+  Scale(Positions("ab"), &models);
+  models = WriteModels("ab");
+  Scale({}, &models);
+  EXPECT_FALSE(fs::exists(Space().scaled));
+  EXPECT_EQ(models[1].path, Space().sparse / "1");
+  EXPECT_EQ(models[1].units_word, "arbitrary");
+  // What is not ours stays.
+  models = WriteModels("ab");
+  Scale(Positions("ab"), &models);
+  WriteBytes(Space().scaled / "notes.txt", "mine");
+  models = WriteModels("ab");
+  Scale({}, &models);
+  EXPECT_EQ(ReadTree(Space().scaled), (std::map<std::string, std::string>{{"notes.txt", "mine"}}));
+}
+
+TEST_F(ScaleModelsTest, ModelsThatAreNotFoundAnyMoreGo) {
+  std::vector<ModelSummary> models = WriteModels("abc");
+  Scale(Positions("abc"), &models);
+  models.resize(1);
+  models[0].path = Space().sparse / "0";
+  Scale(Positions("abc"), &models);
+  EXPECT_TRUE(fs::exists(Space().scaled / "0"));
+  EXPECT_FALSE(fs::exists(Space().scaled / "1"));
+  EXPECT_FALSE(fs::exists(Space().scaled / "2"));
+}
+
+// Between two models that were scaled, one could not be.
+TEST_F(ScaleModelsTest, WithoutSourcesTheFolderGoesWhateverFailedInIt) {
+  std::vector<ModelSummary> models = WriteModels("abc");
+  EXPECT_EQ(NamesOf(Scale(Positions("ac"), &models).left_out),
+            std::vector<std::string>{"scale of sparse/1"});
+  ASSERT_TRUE(fs::exists(Space().scaled / "2/images.bin"));
+  models = WriteModels("abc");
+  Scale({}, &models);
+  EXPECT_FALSE(fs::exists(Space().scaled));
+}
+
+TEST_F(ScaleModelsTest, LeftOutIsWhatNoModelCouldUse) {
+  const auto with_bar = [&](const std::string& marks) {
+    ModelScalerOptions scaler = Positions("ab");
+    scaler.sources.scale_bars_path = Write("bars.csv", "name1,name2,length_m,sigma_m\np,q,1,0.5\n");
+    scaler.sources.targets_path = Write("targets.csv", "target,image,x,y\n" + marks);
+    return scaler;
+  };
+  // In each model marked once only: nothing to triangulate.
+  std::vector<ModelSummary> models = WriteModels("ab");
+  RunReport report =
+      Scale(with_bar("p,a1.png,200,100\nq,a1.png,300,200\np,b1.png,200,100\nq,b1.png,300,200\n"),
+            &models);
+  EXPECT_EQ(NamesOf(report.left_out), std::vector<std::string>{"scale bar p - q"});
+  // In the first model twice: a place of the ground moves by a step from picture to picture.
+  models = WriteModels("ab");
+  report = Scale(with_bar("p,a1.png,200,100\np,a2.png,110,100\nq,a1.png,300,200\n"
+                          "q,a2.png,210,200\n"),
+                 &models);
+  EXPECT_EQ(NamesOf(report.left_out), std::vector<std::string>());
+}
+
+}  // namespace
+}  // namespace colmap_seapoint

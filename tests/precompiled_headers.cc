@@ -1,0 +1,1 @@
+// Nothing but what precompiled_headers.cmake adds.
