@@ -45,8 +45,8 @@ std::optional<Eigen::Vector2d> SurfaceVisibility::Project(size_t image_idx,
   const double distance = to_camera.norm();
   if (normal.dot(to_camera) < kMinCosine * distance) return std::nullopt;
   // Start a hundredth of a cell off the surface, so that the point does not hide itself.
-  const double start = 0.01 * surface_->Grid().step / distance;
-  const Eigen::Vector3d lifted = point + 0.01 * surface_->Grid().step * normal;
+  const double start = 0.01 * surface_->CellSize() / distance;
+  const Eigen::Vector3d lifted = point + 0.01 * surface_->CellSize() * normal;
   if (surface_->IntersectRay(lifted, view.centre - lifted, start, 1)) return std::nullopt;
   return pixel;
 }

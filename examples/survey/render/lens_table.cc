@@ -1,5 +1,6 @@
 #include "examples/survey/render/lens_table.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
 
