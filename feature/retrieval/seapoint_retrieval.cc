@@ -178,7 +178,7 @@ void SeaPointIndex::FindAlike(const Descriptor& descriptor, const std::vector<bo
   for (size_t w = 0; w < (words[0] == words[1] ? 1u : 2u); ++w) {
     const Entry* begin = entries_.data() + word_begins_[words[w]];
     const size_t count = word_begins_[words[w] + 1] - word_begins_[words[w]];
-    if (count > kMaxWordSize) continue;
+    if (count == 0 || count > kMaxWordSize) continue;
     const int max_distance =
         nearest->size() < kVotesPerPoint ? kMaxSignatureDistance : nearest->back().distance;
     const size_t num_near = bits::FindNear(signature, &begin->signature, sizeof(Entry), count,

@@ -50,8 +50,10 @@ void CloudWriter::Add(const CloudPoint& point, const uint32_t* image_idxs,
   std::memcpy(record + 6 * sizeof(float), point.rgb.data(), 3);
   vis_buffer_.resize(vis_at + (1 + num_image_idxs) * sizeof(uint32_t));
   std::memcpy(vis_buffer_.data() + vis_at, &num_image_idxs, sizeof(uint32_t));
-  std::memcpy(vis_buffer_.data() + vis_at + sizeof(uint32_t), image_idxs,
-              num_image_idxs * sizeof(uint32_t));
+  if (num_image_idxs > 0) {  // a null pointer may not be copied from, not even zero bytes
+    std::memcpy(vis_buffer_.data() + vis_at + sizeof(uint32_t), image_idxs,
+                num_image_idxs * sizeof(uint32_t));
+  }
   ++num_points_;
   if (ply_buffer_.size() >= kWriteBytes) Flush();
 }

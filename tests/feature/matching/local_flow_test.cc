@@ -72,7 +72,8 @@ TEST(LocalFlowTest, OnePlaceMovesAsItDoes) {
 
 TEST(LocalFlowTest, WithoutMatchesNothingIsKnown) {
   const std::vector<SeaPoint> none;
-  LocalFlow flow(none, none, FeatureMatches());
+  const FeatureMatches no_matches;  // lent to the flow, as the points are
+  LocalFlow flow(none, none, no_matches);
   EXPECT_TRUE(std::isnan(flow.Predict(At(1, 2)).x()));
   EXPECT_TRUE(flow.Slips().empty());
   EXPECT_EQ(flow.UsualSlip(At(1, 2), {}), 0);
