@@ -86,7 +86,9 @@ TEST(SheetTest, TheFirstHitAndTheNearestPlaceOfAStatueAreThoseOfAllItsTriangles)
       nearest = std::min(nearest, cell.Distance(target, 0.3));
     }
     ASSERT_EQ(hit.has_value(), first < 10) << k;
-    if (hit) EXPECT_NEAR(hit->t, first, 1e-12);
+    if (hit) {
+      EXPECT_NEAR(hit->t, first, 1e-12);
+    }
     num_hits += hit.has_value();
     EXPECT_NEAR(statue.Distance(target, 0.3), nearest, 1e-12);
   }

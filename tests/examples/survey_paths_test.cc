@@ -251,53 +251,119 @@ INSTANTIATE_TEST_SUITE_P(Paths, AnyPathTest,
                                          SurveyPath::kSwim, SurveyPath::kCircle,
                                          SurveyPath::kStatue, SurveyPath::kWall,
                                          SurveyPath::kDescent),
-                         [](const auto& info) { return SurveyPathName(info.param); });
+                         [](const auto& path) { return SurveyPathName(path.param); });
+
+struct Agreement {
+  int count = 0;           // of exact points that two of the first three pictures show
+  double correlation = 0;  // of the brightness at their two pixels
+};
 
 // Pictures and truth are made of one scene: brightness at the two pixels of an exact point agrees.
+Agreement AgreementOfPictures(const SurveyOptions& options) {
+  constexpr uint32_t kNumPictures = 3;
+  SurveyTruth truth = MakeSurveyTruth(options);
+  truth.model.images.resize(std::min<size_t>(truth.model.images.size(), kNumPictures));
+  std::vector<ColorImage> pictures;
+  RenderSurvey(options, truth, [&](const PosedImage&, ColorImage&& picture) {
+    pictures.push_back(std::move(picture));
+  });
+  const auto grey = [&](const SparsePoint::TrackElement& e) {
+    const Eigen::Vector2d p = truth.model.images[e.image_id - 1].points2D[e.point2D_idx];
+    return static_cast<double>(
+        pictures[e.image_id - 1].At(std::min(static_cast<int>(p.x()), options.width - 1),
+                                    std::min(static_cast<int>(p.y()), options.height - 1), 1));
+  };
+  Agreement agreement;
+  double a = 0, b = 0, aa = 0, bb = 0, ab = 0;
+  for (const auto& [id, point] : truth.model.points3D) {
+    const auto &first = point.track[0], &second = point.track[1];
+    if (first.image_id > kNumPictures || second.image_id > kNumPictures) continue;
+    const double x = grey(first), y = grey(second);
+    a += x, b += y, aa += x * x, bb += y * y, ab += x * y;
+    ++agreement.count;
+  }
+  const double n = agreement.count;
+  agreement.correlation = (n * ab - a * b) / std::sqrt((n * aa - a * a) * (n * bb - b * b));
+  return agreement;
+}
+
+SurveyOptions ClearSurvey(SurveyPath path) {
+  SurveyOptions options = SmallSurvey(path);
+  options.width = 320;
+  options.height = 240;
+  options.turbidity = 0;
+  options.noise = 0;
+  return options;
+}
+
 TEST(SurveyPathsTest, TwoPicturesShowTheSamePlaceAlikeOnEveryPath) {
   for (SurveyPath path : {SurveyPath::kSwim, SurveyPath::kCircle, SurveyPath::kStatue,
                           SurveyPath::kWall, SurveyPath::kDescent}) {
-    SurveyOptions options = SmallSurvey(path);
-    options.width = 320;
-    options.height = 240;
-    options.turbidity = 0;
-    options.noise = 0;
+    SurveyOptions options = ClearSurvey(path);
     if (path == SurveyPath::kCircle || path == SurveyPath::kStatue) options.images_per_strip = 24;
-    SurveyTruth truth = MakeSurveyTruth(options);
-    truth.model.images.resize(3);
-    std::vector<ColorImage> pictures;
-    RenderSurvey(options, truth, [&](const PosedImage&, ColorImage&& picture) {
-      pictures.push_back(std::move(picture));
-    });
-    double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
-    for (const auto& [id, point] : truth.model.points3D) {
-      const auto &first = point.track[0], &second = point.track[1];
-      if (first.image_id > 3 || second.image_id > 3) continue;
-      const auto grey = [&](const SparsePoint::TrackElement& e) {
-        const Eigen::Vector2d p = truth.model.images[e.image_id - 1].points2D[e.point2D_idx];
-        return static_cast<double>(
-            pictures[e.image_id - 1].At(std::min(static_cast<int>(p.x()), options.width - 1),
-                                        std::min(static_cast<int>(p.y()), options.height - 1), 1));
-      };
-      const double x = grey(first), y = grey(second);
-      n += 1, a += x, b += y, aa += x * x, bb += y * y, ab += x * y;
-    }
-    ASSERT_GT(n, 100) << SurveyPathName(path);
-    EXPECT_GT((n * ab - a * b) / std::sqrt((n * aa - a * a) * (n * bb - b * b)), 0.6)
-        << SurveyPathName(path);
+    const Agreement agreement = AgreementOfPictures(options);
+    ASSERT_GT(agreement.count, 100) << SurveyPathName(path);
+    EXPECT_GT(agreement.correlation, 0.6) << SurveyPathName(path);
   }
 }
 
-TEST(SurveyPathsTest, WideFisheyeRendersBlackCornersAndAgrees) {
+TEST(SurveyPathsTest, PicturesOfAWideFisheyeShowTheSamePlaceAlike) {
+  for (double field_of_view : {120.0, 150.0}) {
+    SurveyOptions options = ClearSurvey(SurveyPath::kStrips);
+    options.camera_model = CameraModel::kOpenCVFisheye;
+    options.field_of_view_deg = field_of_view;
+    const Agreement agreement = AgreementOfPictures(options);
+    ASSERT_GT(agreement.count, 100) << field_of_view;
+    EXPECT_GT(agreement.correlation, 0.6) << field_of_view;
+  }
+}
+
+TEST(SurveyPathsTest, AWideFisheyeHasBlackCorners) {
   SurveyOptions options = SmallSurvey(SurveyPath::kStrips);
   options.camera_model = CameraModel::kOpenCVFisheye;
   options.field_of_view_deg = 150;
-  options.images_per_strip = 2;
+  options.images_per_strip = 1;
   options.noise = 0;
-  const SurveyTruth truth = MakeSurveyTruth(options);
-  RenderSurvey(options, truth, [&](const PosedImage&, ColorImage&& picture) {
+  RenderSurvey(options, MakeSurveyTruth(options), [&](const PosedImage&, ColorImage&& picture) {
     EXPECT_LT(picture.At(0, 0, 1), 5);
     EXPECT_GT(picture.At(options.width / 2, options.height / 2, 1), 20);
+  });
+}
+
+// The statue's colours close around it: where its map begins and ends, straight before the first
+// picture, brightness changes no more than beside it.
+TEST(SurveyPathsTest, AStatueHasNoSeam) {
+  SurveyOptions options = ClearSurvey(SurveyPath::kStatue);
+  options.width = 640;
+  options.height = 480;
+  options.jitter = 0;
+  SurveyTruth truth = MakeSurveyTruth(options);
+  truth.model.images.resize(1);
+  const Camera& camera = truth.model.cameras.at(1);
+  const PosedImage& image = truth.model.images[0];
+  const auto change = [&](const ColorImage& picture, double side) {  // across `side`, metres
+    double sum = 0;
+    for (double z = 0.2; z < 0.98; z += 0.01) {
+      double grey[2];
+      for (int k = 0; k < 2; ++k) {
+        const Eigen::Vector3d target(0, side + (k == 0 ? -0.004 : 0.004),
+                                     z * StatueHeight(options));
+        const Eigen::Vector3d origin(10, target.y(), target.z());
+        const auto hit = truth.surface.Trace(origin, {-1, 0, 0}, 0, 20);
+        const auto pixel = camera.ImgFromCam(image.cam_from_world * hit->xyz);
+        grey[k] = picture.At(static_cast<int>(pixel->x()), static_cast<int>(pixel->y()), 1);
+      }
+      sum += std::abs(grey[1] - grey[0]);
+    }
+    return sum;
+  };
+  RenderSurvey(options, truth, [&](const PosedImage&, ColorImage&& picture) {
+    double beside = 0;
+    for (double side : {-0.16, -0.12, -0.08, -0.04, 0.04, 0.08, 0.12, 0.16}) {
+      beside = std::max(beside, change(picture, side));
+    }
+    EXPECT_GT(beside, 0);
+    EXPECT_LT(change(picture, 0), 1.2 * beside);
   });
 }
 

@@ -22,17 +22,26 @@ AlbedoMap GroundColours(const Surface& surface, const Seabed& seabed) {
   return AlbedoMap(seabed, grid.MinX(), grid.MinY(), grid.MaxX(), grid.MaxY(), kMaxAlbedoBytes);
 }
 
-// The object wears the seabed's colours of another place.
+// The object wears the seabed's colours of another place. Around it they close: over this share of
+// the way its first columns come out of what lies behind the last one.
 constexpr double kObjectTexture = 500;  // metres away, in x and y
+constexpr double kClosingShare = 0.125;
+
+double WayAround(const Sheet& object) { return (object.NumX() - 1) * object.Step(); }
 
 std::unique_ptr<AlbedoMap> ObjectColours(const Sheet& object, const Seabed& seabed,
                                          int num_threads) {
   if (object.Empty()) return nullptr;
-  const double min = kObjectTexture, max_x = min + object.NumX() * object.Step(),
-               max_y = min + object.NumY() * object.Step();
+  const double min = kObjectTexture, max_y = min + object.NumY() * object.Step(),
+               max_x = min + object.Step() + (1 + kClosingShare) * WayAround(object);
   auto colours = std::make_unique<AlbedoMap>(seabed, min, min, max_x, max_y, kMaxAlbedoBytes);
   colours->Prepare(min, min, max_x, max_y, num_threads);
   return colours;
+}
+
+Eigen::Array3f ColourAt(const AlbedoMap& colours, double x, double y) {
+  const Albedo albedo = colours.At(x, y);
+  return {albedo.red, albedo.green, albedo.blue};
 }
 
 // Grey ground below the vehicle comes out at about a fifth of white; the white balance takes most
@@ -151,6 +160,15 @@ Eigen::Array2i Renderer::SamplesOf(const View& view, int x, int y, const Surface
   return samples;
 }
 
+Eigen::Array3f Renderer::ObjectColour(const Eigen::Vector2d& place) const {
+  const Eigen::Vector2d texture = place.array() + kObjectTexture;
+  const Eigen::Array3f here = ColourAt(*object_colours_, texture.x(), texture.y());
+  const double around = WayAround(surface_->Object()), closing = kClosingShare * around;
+  if (place.x() >= closing) return here;
+  const Eigen::Array3f behind = ColourAt(*object_colours_, texture.x() + around, texture.y());
+  return behind + static_cast<float>(place.x() / closing) * (here - behind);
+}
+
 Eigen::Array3f Renderer::MeanAlbedo(const View& view, int x, int y, const SurfaceHit& hit) const {
   const bool is_object = hit.part == SurfacePart::kObject;
   const Eigen::Array2i samples = SamplesOf(view, x, y, hit);
@@ -172,10 +190,7 @@ Eigen::Array3f Renderer::MeanAlbedo(const View& view, int x, int y, const Surfac
     } else if (cam_ray) {
       place = GroundPlace(view, *cam_ray, point, normal);
     }
-    const Albedo albedo =
-        is_object ? object_colours_->At(place.x() + kObjectTexture, place.y() + kObjectTexture)
-                  : ground_colours_.At(place.x(), place.y());
-    sum += Eigen::Array3f(albedo.red, albedo.green, albedo.blue);
+    sum += is_object ? ObjectColour(place) : ColourAt(ground_colours_, place.x(), place.y());
   }
   return 1.0f / static_cast<float>(samples.prod()) * sum;
 }

@@ -31,6 +31,7 @@ class Renderer {
   };
   View Prepare(const PosedImage& image, int num_threads);
   Eigen::Array3f PixelLight(const View& view, int x, int y) const;
+  Eigen::Array3f ObjectColour(const Eigen::Vector2d& place) const;  // metres on the sheet
   Eigen::Array3f MeanAlbedo(const View& view, int x, int y, const SurfaceHit& hit) const;
   Eigen::Vector2d GroundPlace(const View& view, const Eigen::Vector3d& cam_ray,
                               const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const;

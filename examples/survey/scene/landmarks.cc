@@ -96,8 +96,9 @@ HeightField WithBoulder(const HeightField& ground, const LandmarkOptions& option
       const double q = (grid.X(i) * grid.X(i) + 1.3 * grid.Y(j) * grid.Y(j)) /
                        (options.radius * options.radius) * std::clamp(factor, 0.6, 1.6);
       if (q >= 1) continue;
-      const double bump = options.height * std::pow(1 - q, 0.6) *
-                          (1 + 0.03 * options.relief * static_cast<double>(rough[n]));
+      // No steeper than two to one: colours lie on the plan, and would be drawn out on its sides.
+      const double bump =
+          options.height * (1 - q) * (1 + 0.03 * options.relief * static_cast<double>(rough[n]));
       heights[n] = std::max(heights[n], static_cast<float>(base + bump));
     }
   }
