@@ -111,6 +111,27 @@ NearPoints CountInSpace(const std::vector<Eigen::Vector3f>& points,
   return near;
 }
 
+// Mean number of points in an occupied cell of their own GSD, of those within 4 of it. The sizes of
+// cells go in steps of a quarter octave: points of one place have one GSD, and share their cells.
+double OwnRedundancy(const SurveyTruth& truth, const std::vector<Eigen::Vector3f>& points,
+                     const std::vector<float>& ratios, const std::vector<float>& own_gsd) {
+  const bool is_flat = truth.surface.Object().Empty();
+  std::vector<std::array<int32_t, 4>> cells;
+  for (size_t k = 0; k < points.size(); ++k) {
+    if (ratios[k] > 4) continue;
+    const double octaves = std::log2(static_cast<double>(own_gsd[k]) / truth.gsd);
+    const int32_t level = static_cast<int32_t>(std::lround(4 * octaves));
+    const Eigen::Array3d place = truth.surface.InGround(points[k].cast<double>());
+    const Eigen::Array3d cell = (place / (truth.gsd * std::exp2(0.25 * level))).floor();
+    cells.push_back({level, static_cast<int32_t>(cell.x()), static_cast<int32_t>(cell.y()),
+                     is_flat ? 0 : static_cast<int32_t>(cell.z())});
+  }
+  if (cells.empty()) return 0;
+  std::sort(cells.begin(), cells.end());
+  const auto end = std::unique(cells.begin(), cells.end());
+  return static_cast<double>(cells.size()) / static_cast<double>(end - cells.begin());
+}
+
 void SummariseCoverage(const SurveyTruth& truth, const std::vector<Eigen::Vector3f>& points,
                        const std::vector<float>& distances, const SurfaceSamples& samples,
                        SurveyScore* score) {
@@ -166,7 +187,9 @@ SurveyScore ScoreSurvey(const SurveyTruth& truth, const SparseModel& model, Scor
       points, options.num_threads,
       [&](const Eigen::Vector3d& point) { return OwnGsd(visibility, point, truth.gsd); });
   score.accuracy = Accuracy(distances, truth.gsd);
-  score.own_accuracy = Accuracy(Ratios(distances, own_gsd), 1);
+  const std::vector<float> own_ratios = Ratios(distances, own_gsd);
+  score.own_accuracy = Accuracy(own_ratios, 1);
+  score.own_redundancy = OwnRedundancy(truth, points, own_ratios, own_gsd);
   score.has_views = !cloud.view_gsd.empty();
   if (score.has_views) {
     for (float& gsd : cloud.view_gsd) gsd *= static_cast<float>(score.scale);

@@ -52,8 +52,8 @@ struct SurveyScore {
   // Density: points within 4 GSD of the surface, over its covered, twice-seen area.
   double points_per_gsd2 = 0, points_per_cm2 = 0;
   // Mean number of such points in an occupied cell of 1 GSD: x, y of the ground; with an object,
-  // x, y and z.
-  double redundancy = 0;
+  // x, y and z. The same in cells of the points' own GSD: near places are sampled more densely.
+  double redundancy = 0, own_redundancy = 0;
 };
 
 // Throws Error when the cloud is empty or the model cannot be aligned (fewer than 3 pictures in

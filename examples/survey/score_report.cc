@@ -48,6 +48,7 @@ std::string ScoreJson(const SurveyScore& s) {
   json["parallax_seen_m2"] = s.parallax_seen_m2;
   json["parallax_coverage_2gsd"] = s.parallax_coverage_2gsd;
   json["parallax_coverage_4gsd"] = s.parallax_coverage_4gsd;
+  json["own_redundancy"] = s.own_redundancy;
   json["own_gsd"] = AccuracyJson(s.own_accuracy);
   if (s.has_views) json["view_gsd"] = AccuracyJson(s.view_accuracy);
   return json.dump(2) + "\n";
@@ -81,6 +82,7 @@ std::string ScoreTable(const SurveyScore& s) {
   add("density", s.points_per_gsd2, 3, "points/GSD2");
   add("density", s.points_per_cm2, 2, "points/cm2");
   add("redundancy", s.redundancy, 2, "points/occupied GSD cell");
+  add("redundancy", s.own_redundancy, 2, "points/occupied cell of own GSD");
   return table;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "colmap_seapoint/base/error.h"
+#include "examples/survey/visibility.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -46,6 +47,37 @@ TEST(ScoreTest, ExactCloudIsPerfect) {
   EXPECT_GT(score.coverage_4gsd, 0.98);  // lattice points leave gaps on steep faces
   EXPECT_GT(score.twice_seen_m2, 3);
   EXPECT_NEAR(score.redundancy, 1, 0.35);
+}
+
+// Denser where the GSD is finer is no redundancy; the same cloud twice is.
+TEST(ScoreTest, RedundancyIsInOwnGsd) {
+  SurveyOptions options;
+  options.path = SurveyPath::kDescent;
+  options.width = 200;
+  options.height = 150;
+  options.num_strips = 1;
+  options.images_per_strip = 5;
+  options.relief = 0;
+  options.num_threads = 2;
+  const SurveyTruth truth = MakeSurveyTruth(options);
+  const SurfaceVisibility visibility(truth);
+  // Points a GSD of their own apart, or a little more.
+  std::vector<Eigen::Vector3f> cloud;
+  for (const Eigen::Vector3f& p : ExactCloud(truth)) {
+    const auto gsd = BestPairGsd(visibility.InFrames(p.cast<double>()));
+    if (!gsd) continue;
+    const int every = static_cast<int>(std::ceil(*gsd / truth.surface.CellSize()));
+    const auto index = [&](float v) { return std::lround(v / truth.surface.CellSize()); };
+    if (index(p.x()) % every == 0 && index(p.y()) % every == 0) cloud.push_back(p);
+  }
+  ScoreOptions score_options;
+  score_options.truth_poses = true;
+  const SurveyScore once = ScoreSurvey(truth, truth.model, {cloud, {}}, score_options);
+  EXPECT_NEAR(once.own_redundancy, 1, 0.2);
+  const std::vector<Eigen::Vector3f> same = cloud;
+  cloud.insert(cloud.end(), same.begin(), same.end());
+  const SurveyScore twice = ScoreSurvey(truth, truth.model, {cloud, {}}, score_options);
+  EXPECT_NEAR(twice.own_redundancy, 2 * once.own_redundancy, 1e-12);
 }
 
 TEST(ScoreTest, PlaneIsCoveredWholly) {

@@ -160,9 +160,13 @@ std::optional<Sheet::Hit> Sheet::IntersectRay(const Eigen::Vector3d& origin,
 
 double Sheet::Distance(const Eigen::Vector3d& point, double limit) const {
   if (Empty()) return limit;
-  DistanceVisitor visitor{point, limit * limit};
-  Visit(levels_.size(), 0, 0, &visitor);
-  return std::min(limit, std::sqrt(visitor.best));
+  // Most points lie close to the sheet: a search that begins with a narrow reach enters few blocks.
+  for (double reach = std::min(2 * step_, limit);; reach = std::min(4 * reach, limit)) {
+    DistanceVisitor visitor{point, reach * reach};
+    Visit(levels_.size(), 0, 0, &visitor);
+    if (visitor.best < reach * reach) return std::sqrt(visitor.best);
+    if (reach >= limit) return limit;
+  }
 }
 
 Eigen::Vector3d Sheet::At(const Eigen::Vector2d& lattice) const {

@@ -59,8 +59,8 @@ std::optional<SurfaceHit> Surface::Trace(const Eigen::Vector3d& origin,
 }
 
 double Surface::Distance(const Eigen::Vector3d& point, double limit) const {
-  const double distance = ground_.Distance(InGround(point), limit);
-  return object_.Empty() ? distance : object_.Distance(point, distance);
+  // The object first: far from the ground, a search of that costs much more.
+  return ground_.Distance(InGround(point), object_.Distance(point, limit));
 }
 
 }  // namespace colmap_seapoint
