@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <iostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "colmap_seapoint/base/error.h"
@@ -17,6 +18,7 @@
 #include "examples/survey/control.h"
 #include "examples/survey/score.h"
 #include "examples/survey/survey.h"
+#include "examples/survey/view_gsd.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -29,33 +31,60 @@ constexpr char kUsage[] =
     "demo_survey score --survey_path DIR --input_path MODEL --cloud_path fused.ply [options]\n"
     "demo_survey <command> -h lists the options.\n";
 
+void AddTrackOptions(po::options_description* description, SurveyOptions* o) {
+  auto add = description->add_options();
+  add("num_strips", Default(&o->num_strips), "lawn-mower strips, lanes, rows, rings or dives");
+  add("images_per_strip", Default(&o->images_per_strip),
+      "pictures a strip; 0: a ring or a dive has as many as forward_overlap asks for");
+  add("revisit", Default(&o->revisit),
+      "pictures taken over the first strip again at the end, from another height and heading");
+  add("forward_overlap", Default(&o->forward_overlap),
+      "with the next picture, 0..0.98 (0.98: as a video of 30 pictures a second)");
+  add("side_overlap", Default(&o->side_overlap), "with the next strip, 0..0.98");
+  add("altitude", Default(&o->altitude), "above the seabed, or to wall and statue, metres");
+  add("pitch", Default(&o->pitch_deg), "of a swim: degrees below the horizon, 10..90");
+  add("roll", Default(&o->roll_deg),
+      "of every second picture against the first, about its axis, degrees, -180..180");
+  add("jitter", Default(&o->jitter), "factor on the vehicle's unsteadiness");
+}
+
+void AddPictureOptions(po::options_description* description, SurveyOptions* o) {
+  auto add = description->add_options();
+  add("width", Default(&o->width), "of a picture, pixels");
+  add("height", Default(&o->height), "of a picture, pixels");
+  add("field_of_view", Default(&o->field_of_view_deg),
+      "horizontal, degrees, 20..80 (OPENCV) or 20..150 (OPENCV_FISHEYE)");
+  add("noise", Default(&o->noise), "factor on the sensor noise");
+  add("image_format", Default(&o->image_format), "jpg or png");
+}
+
+void AddWaterOptions(po::options_description* description, SurveyOptions* o) {
+  auto add = description->add_options();
+  add("relief", Default(&o->relief), "factor on the seabed's heights, 0..1.5");
+  add("turbidity", Default(&o->turbidity), "0 clear .. 1 murky");
+  add("caustics", Default(&o->caustics), "0 none .. 1 strong");
+  add("marine_snow", Default(&o->marine_snow), "0 none .. 1 heavy");
+  add("max_range", Default(&o->max_range),
+      "that the pictures see, metres; 0: 3.5 x altitude (descent: 5 x) where they show open water");
+}
+
 int Generate(const std::vector<std::string>& arguments) {
   SurveyOptions o;
-  std::string output_path;
+  std::string output_path, path = SurveyPathName(o.path), camera_model = "OPENCV";
   po::options_description description("demo_survey generate");
   auto add = description.add_options();
   add("help,h", "this text");
   add("output_path", po::value(&output_path)->required(), "folder to write to");
   add("seed", Default(&o.seed), "of everything random");
-  add("num_strips", Default(&o.num_strips), "lawn-mower strips");
-  add("images_per_strip", Default(&o.images_per_strip), "pictures a strip");
-  add("revisit", Default(&o.revisit),
-      "pictures taken over the first strip again at the end, from another height and heading");
-  add("width", Default(&o.width), "of a picture, pixels");
-  add("height", Default(&o.height), "of a picture, pixels");
-  add("forward_overlap", Default(&o.forward_overlap), "with the next picture, 0..0.98");
-  add("side_overlap", Default(&o.side_overlap), "with the next strip, 0..0.98");
-  add("altitude", Default(&o.altitude), "above the seabed, metres");
-  add("field_of_view", Default(&o.field_of_view_deg), "horizontal, degrees");
-  add("relief", Default(&o.relief), "factor on the seabed's heights, 0..1.5");
-  add("turbidity", Default(&o.turbidity), "0 clear .. 1 murky");
-  add("caustics", Default(&o.caustics), "0 none .. 1 strong");
-  add("marine_snow", Default(&o.marine_snow), "0 none .. 1 heavy");
-  add("noise", Default(&o.noise), "factor on the sensor noise");
-  add("jitter", Default(&o.jitter), "factor on the vehicle's unsteadiness");
-  add("image_format", Default(&o.image_format), "jpg or png");
+  add("path", Default(&path), "strips, random, swim, circle, statue, wall or descent");
+  add("camera_model", Default(&camera_model), "OPENCV or OPENCV_FISHEYE");
+  AddTrackOptions(&description, &o);
+  AddPictureOptions(&description, &o);
+  AddWaterOptions(&description, &o);
   add("num_threads", Default(&o.num_threads), "-1 = all");
   if (!ParseOptions(description, arguments)) return 0;
+  o.path = ParseSurveyPath(path);
+  o.camera_model = ParseSurveyCameraModel(camera_model);
   const std::string problem = CheckSurveyOptions(o);
   if (!problem.empty()) throw UsageError(problem);
 
@@ -125,13 +154,10 @@ int Score(const std::vector<std::string>& arguments) {
 
   const SurveyTruth truth = ReadSurveyTruth(survey_path);
   const SparseModel model = ReadSparseModel(input_path);
-  std::vector<Eigen::Vector3f> points;
-  {
-    const std::vector<CloudPoint> cloud = ReadCloud(cloud_path);
-    points.reserve(cloud.size());
-    for (const CloudPoint& point : cloud) points.push_back(point.xyz);
-  }
-  const SurveyScore score = ScoreSurvey(truth, model, std::move(points), o);
+  ScoredCloud cloud;
+  for (const CloudPoint& point : ReadCloud(cloud_path)) cloud.points.push_back(point.xyz);
+  cloud.view_gsd = ViewGsd(model, cloud.points, cloud_path);
+  const SurveyScore score = ScoreSurvey(truth, model, std::move(cloud), o);
   if (!output_path.empty()) WriteTextFile(output_path, ScoreJson(score));
   std::cout << ScoreTable(score);
   return 0;

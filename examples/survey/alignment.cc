@@ -101,7 +101,7 @@ CentreAlignment AlignCentres(const SparseModel& truth, const SparseModel& model,
   return result;
 }
 
-Similarity3d RefineOnSurface(const HeightField& surface, const std::vector<Eigen::Vector3f>& points,
+Similarity3d RefineOnSurface(const Surface& surface, const std::vector<Eigen::Vector3f>& points,
                              const Similarity3d& start, double reach) {
   constexpr size_t kMaxPoints = 20000;
   constexpr int kIterations = 15;
@@ -114,9 +114,11 @@ Similarity3d RefineOnSurface(const HeightField& surface, const std::vector<Eigen
     const Eigen::Vector3d pivot = similarity * points.front().cast<double>();
     for (size_t i = 0; i < points.size(); i += stride) {
       const Eigen::Vector3d p = similarity * points[i].cast<double>();
-      if (!surface.Grid().Contains(p.x(), p.y())) continue;
-      const Eigen::Vector3d n = surface.Normal(p.x(), p.y());
-      const double error = n.z() * (p.z() - surface.Height(p.x(), p.y()));
+      const Eigen::Vector3d place = surface.InGround(p);
+      if (!surface.Ground().Grid().Contains(place.x(), place.y())) continue;
+      const double rise = place.z() - surface.Ground().Height(place.x(), place.y());
+      const double error = surface.Ground().Normal(place.x(), place.y()).z() * rise;
+      const Eigen::Vector3d n = surface.GroundAt(place.x(), place.y()).normal;
       if (std::abs(error) > reach) continue;
       Eigen::Matrix<double, 7, 1> row;
       row << (p - pivot).cross(n), n, n.dot(p - pivot);

@@ -6,7 +6,7 @@
 
 #include "colmap_seapoint/base/similarity3.h"
 #include "colmap_seapoint/base/sparse_model.h"
-#include "examples/survey/scene/height_field.h"
+#include "examples/survey/scene/surface.h"
 
 namespace colmap_seapoint {
 
@@ -23,8 +23,8 @@ struct CentreAlignment {
 CentreAlignment AlignCentres(const SparseModel& truth, const SparseModel& model, bool identity);
 
 // Moves on from `start` by point-to-plane iterations of the points (model's frame; a subset is
-// used) onto the surface; points farther than `reach` metres do not pull.
-Similarity3d RefineOnSurface(const HeightField& surface, const std::vector<Eigen::Vector3f>& points,
+// used) onto the ground; points farther than `reach` metres do not pull.
+Similarity3d RefineOnSurface(const Surface& surface, const std::vector<Eigen::Vector3f>& points,
                              const Similarity3d& start, double reach);
 
 }  // namespace colmap_seapoint

@@ -30,28 +30,28 @@ std::string Format(const char* format, Values... values) {
   return text;
 }
 
-std::array<Eigen::Vector3d, 2> BarEnds(const SurveyTruth& truth, double length) {
+std::array<SurfaceHit, 2> BarEnds(const SurveyTruth& truth, double length) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const PosedImage& image : truth.model.images) {
     middle +=
         image.cam_from_world.OriginInSource() / static_cast<double>(truth.model.images.size());
   }
-  std::array<Eigen::Vector3d, 2> ends;
+  middle = truth.surface.InGround(middle);
+  std::array<SurfaceHit, 2> ends;
   for (size_t i = 0; i < 2; ++i) {
     const double x = middle.x() + (i == 0 ? -0.5 : 0.5) * length;
-    ends[i] = {x, middle.y(), truth.surface.Height(x, middle.y())};
+    ends[i] = truth.surface.GroundAt(x, middle.y());
   }
   return ends;
 }
 
 std::string TargetRows(const SurveyTruth& truth, const ControlOptions& options,
-                       const std::string& name, const Eigen::Vector3d& end, int64_t first_index) {
-  const SurfaceVisibility visibility(truth.model, truth.surface);
-  const Eigen::Vector3d normal = truth.surface.Normal(end.x(), end.y());
+                       const std::string& name, const SurfaceHit& end, int64_t first_index) {
+  const SurfaceVisibility visibility(truth);
   std::string rows;
   int num_marks = 0;
   for (size_t i = 0; i < truth.model.images.size(); ++i) {
-    const auto pixel = visibility.Project(i, end, normal);
+    const auto pixel = visibility.Project(i, end.xyz, end.normal);
     if (!pixel) continue;
     const int64_t index = first_index + 2 * static_cast<int64_t>(i);
     const Camera& camera = truth.model.cameras.at(truth.model.images[i].camera_id);
@@ -62,10 +62,10 @@ std::string TargetRows(const SurveyTruth& truth, const ControlOptions& options,
     ++num_marks;
   }
   if (num_marks >= 2) return rows;
-  throw Error(
-      "the survey",
-      "no two of its pictures see the end of a bar at " + Format("%.2f, %.2f", end.x(), end.y()),
-      "choose a shorter --bar_length");
+  throw Error("the survey",
+              "no two of its pictures see the end of a bar at " +
+                  Format("%.2f, %.2f", end.xyz.x(), end.xyz.y()),
+              "choose a shorter --bar_length");
 }
 
 std::vector<bool> Outliers(size_t count, const ControlOptions& options) {
@@ -96,7 +96,7 @@ ControlTables MakeControl(const SurveyTruth& truth, const ControlOptions& option
   ControlTables tables;
   const auto ends = BarEnds(truth, options.bar_length);
   tables.bars = "name1,name2,length_m,sigma_m\n" +
-                Format("bar_a,bar_b,%.6f,0.001\n", (ends[1] - ends[0]).norm());
+                Format("bar_a,bar_b,%.6f,0.001\n", (ends[1].xyz - ends[0].xyz).norm());
   tables.targets = "target,image,x,y\n" + TargetRows(truth, options, "bar_a", ends[0], 0) +
                    TargetRows(truth, options, "bar_b", ends[1], 1000000);
   tables.positions = "image,x,y,z\n";

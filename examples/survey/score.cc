@@ -4,196 +4,164 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/parallel.h"
 #include "examples/survey/alignment.h"
+#include "examples/survey/score_coverage.h"
 #include "examples/survey/visibility.h"
 
 namespace colmap_seapoint {
 namespace {
 
 constexpr double kLimitGsd = 64;  // larger distances are not told apart
-constexpr int kSampleStep = 2;    // lattice cells (about GSDs) between the samples of the surface
+constexpr size_t kChunk = 4096;   // points a task
 
-std::vector<float> Distances(const HeightField& surface, const std::vector<Eigen::Vector3f>& points,
-                             double limit, int num_threads) {
-  std::vector<float> distances(points.size());
-  constexpr size_t kChunk = 4096;
+// The result of `of` for every point.
+template <typename Of>
+std::vector<float> ForEachPoint(const std::vector<Eigen::Vector3f>& points, int num_threads,
+                                const Of& of) {
+  std::vector<float> values(points.size());
   const size_t num_chunks = (points.size() + kChunk - 1) / kChunk;
   ParallelFor(num_threads, static_cast<int64_t>(num_chunks), [&](int64_t chunk) {
     const size_t begin = static_cast<size_t>(chunk) * kChunk;
     for (size_t i = begin; i < std::min(points.size(), begin + kChunk); ++i) {
-      distances[i] = static_cast<float>(surface.Distance(points[i].cast<double>(), limit));
+      values[i] = static_cast<float>(of(points[i].cast<double>()));
     }
   });
-  return distances;
+  return values;
 }
 
-void SummariseDistances(std::vector<float> distances, double gsd, SurveyScore* score) {
+// The best that two pictures that hold the point can do; without two, the best of one.
+double OwnGsd(const SurfaceVisibility& visibility, const Eigen::Vector3d& point, double mean_gsd) {
+  const std::vector<Sighting> sightings = visibility.InFrames(point);
+  if (const auto pair_gsd = BestPairGsd(sightings)) return *pair_gsd;
+  double best = sightings.empty() ? mean_gsd : sightings[0].gsd;
+  for (const Sighting& sighting : sightings) best = std::min(best, sighting.gsd);
+  return best;
+}
+
+AccuracyScore Accuracy(std::vector<float> distances, double gsd) {
+  AccuracyScore score;
   const double n = static_cast<double>(distances.size());
   const auto share = [&](double limit) {
     return static_cast<double>(std::count_if(distances.begin(), distances.end(),
                                              [&](float d) { return d <= limit * gsd; })) /
            n;
   };
-  score->share_1gsd = share(1);
-  score->share_2gsd = share(2);
-  score->share_4gsd = share(4);
-  for (float d : distances) score->mean_gsd += d / gsd / n;
+  score.share_1gsd = share(1);
+  score.share_2gsd = share(2);
+  score.share_4gsd = share(4);
+  for (float d : distances) score.mean_gsd += d / gsd / n;
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
   std::nth_element(distances.begin(), middle, distances.end());
-  score->median_gsd = *middle / gsd;
+  score.median_gsd = *middle / gsd;
+  return score;
 }
 
-// Points by square of the ground plan, for "is there one within `cell`?".
-class PointBins {
- public:
-  PointBins(const HeightField& surface, const std::vector<Eigen::Vector3f>& points, double cell)
-      : points_(points),
-        cell_(cell),
-        min_x_(surface.Grid().MinX() - cell),
-        min_y_(surface.Grid().MinY() - cell) {
-    nx_ = static_cast<int>((surface.Grid().MaxX() - min_x_) / cell) + 2;
-    ny_ = static_cast<int>((surface.Grid().MaxY() - min_y_) / cell) + 2;
-    begin_.assign(static_cast<size_t>(nx_) * static_cast<size_t>(ny_) + 1, 0);
-    for (const Eigen::Vector3f& p : points) {
-      const int64_t bin = Bin(p.x(), p.y());
-      if (bin >= 0) ++begin_[static_cast<size_t>(bin) + 1];
-    }
-    for (size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
-    order_.resize(begin_.back());
-    std::vector<uint32_t> next(begin_.begin(), begin_.end() - 1);
-    for (size_t i = 0; i < points.size(); ++i) {
-      const int64_t bin = Bin(points[i].x(), points[i].y());
-      if (bin >= 0) order_[next[static_cast<size_t>(bin)]++] = static_cast<uint32_t>(i);
-    }
-  }
+std::vector<float> Ratios(const std::vector<float>& distances, const std::vector<float>& gsd) {
+  std::vector<float> ratios(distances.size());
+  for (size_t i = 0; i < ratios.size(); ++i) ratios[i] = distances[i] / gsd[i];
+  return ratios;
+}
 
-  // Distance to the nearest point, when that is at most the cell size; else infinity. Stops early
-  // at any point within `enough`.
-  double Nearest(const Eigen::Vector3d& place, double enough) const {
-    double best = cell_ * cell_ * (1 + 1e-9);
-    bool found = false;
-    const int cx = static_cast<int>((place.x() - min_x_) / cell_);
-    const int cy = static_cast<int>((place.y() - min_y_) / cell_);
-    for (int y = std::max(0, cy - 1); y <= std::min(ny_ - 1, cy + 1); ++y) {
-      for (int x = std::max(0, cx - 1); x <= std::min(nx_ - 1, cx + 1); ++x) {
-        const size_t bin =
-            static_cast<size_t>(y) * static_cast<size_t>(nx_) + static_cast<size_t>(x);
-        for (uint32_t k = begin_[bin]; k < begin_[bin + 1]; ++k) {
-          const double d = (points_[order_[k]].cast<double>() - place).squaredNorm();
-          if (d > best) continue;
-          best = d;
-          found = true;
-          if (d <= enough * enough) return std::sqrt(d);
-        }
-      }
-    }
-    return found ? std::sqrt(best) : std::numeric_limits<double>::infinity();
-  }
-
- private:
-  int64_t Bin(double x, double y) const {
-    const double bx = std::floor((x - min_x_) / cell_), by = std::floor((y - min_y_) / cell_);
-    if (!(bx >= 0 && by >= 0 && bx < nx_ && by < ny_)) return -1;
-    return static_cast<int64_t>(by) * nx_ + static_cast<int64_t>(bx);
-  }
-
-  const std::vector<Eigen::Vector3f>& points_;
-  double cell_, min_x_, min_y_;
-  int nx_ = 0, ny_ = 0;
-  std::vector<uint32_t> begin_, order_;
+// The points within 4 GSD of the surface, those of them on covered surface, and the cells of 1 GSD
+// that hold any.
+struct NearPoints {
+  size_t num_near = 0, num_on_covered = 0, num_cells = 0;
 };
 
-enum SampleState : uint8_t { kNotTwiceSeen = 0, kBare, kCovered4, kCovered2 };
-
-// The surface in squares of kSampleStep cells: which are seen twice, which have a point nearby.
-struct SurfaceSamples {
-  int nx = 0, ny = 0;
-  std::vector<uint8_t> state;
-  double area[4] = {0, 0, 0, 0};  // by state, m^2
-};
-
-SurfaceSamples SampleSurface(const SurveyTruth& truth, const PointBins& bins, int num_threads) {
-  const HeightField& surface = truth.surface;
-  const SurfaceVisibility visibility(truth.model, surface);
-  SurfaceSamples samples;
-  samples.nx = (surface.Grid().nx - 1) / kSampleStep;
-  samples.ny = (surface.Grid().ny - 1) / kSampleStep;
-  samples.state.assign(static_cast<size_t>(samples.nx) * static_cast<size_t>(samples.ny),
-                       kNotTwiceSeen);
-  const double side = kSampleStep * surface.Grid().step;
-  std::vector<std::array<double, 4>> row_areas(static_cast<size_t>(samples.ny));
-  ParallelFor(num_threads, samples.ny, [&](int64_t j) {
-    std::array<double, 4>& areas = row_areas[static_cast<size_t>(j)];
-    areas.fill(0);
-    for (int i = 0; i < samples.nx; ++i) {
-      const double x = surface.Grid().MinX() + (i + 0.5) * side;
-      const double y = surface.Grid().MinY() + (static_cast<double>(j) + 0.5) * side;
-      const Eigen::Vector3d place(x, y, surface.Height(x, y));
-      const Eigen::Vector3d normal = surface.Normal(x, y);
-      if (visibility.CountViews(place, normal, 2) < 2) continue;
-      const double nearest = bins.Nearest(place, 2 * truth.gsd);
-      const SampleState state = nearest <= 2 * truth.gsd   ? kCovered2
-                                : nearest <= 4 * truth.gsd ? kCovered4
-                                                           : kBare;
-      samples.state[static_cast<size_t>(j) * static_cast<size_t>(samples.nx) +
-                    static_cast<size_t>(i)] = state;
-      areas[state] += side * side / normal.z();
-    }
-  });
-  for (const auto& areas : row_areas) {
-    for (size_t s = 0; s < 4; ++s) samples.area[s] += areas[s];
+NearPoints CountOnGround(const SurveyTruth& truth, const std::vector<Eigen::Vector3f>& points,
+                         const std::vector<float>& distances, const SurfaceSamples& samples) {
+  const GridSpec& grid = truth.surface.Ground().Grid();
+  const double side = kSampleStep * grid.step;
+  const size_t cells_x = static_cast<size_t>((grid.MaxX() - grid.MinX()) / truth.gsd) + 1;
+  const size_t cells_y = static_cast<size_t>((grid.MaxY() - grid.MinY()) / truth.gsd) + 1;
+  std::vector<bool> occupied(cells_x * cells_y, false);
+  NearPoints near;
+  for (size_t k = 0; k < points.size(); ++k) {
+    const Eigen::Vector3d place = truth.surface.InGround(points[k].cast<double>());
+    const double x = place.x() - grid.MinX(), y = place.y() - grid.MinY();
+    if (distances[k] > 4 * truth.gsd || x < 0 || y < 0) continue;
+    const size_t cx = static_cast<size_t>(x / truth.gsd), cy = static_cast<size_t>(y / truth.gsd);
+    if (cx >= cells_x || cy >= cells_y) continue;
+    ++near.num_near;
+    near.num_cells += !occupied[cy * cells_x + cx];
+    occupied[cy * cells_x + cx] = true;
+    const size_t i = static_cast<size_t>(x / side), j = static_cast<size_t>(y / side);
+    if (i >= static_cast<size_t>(samples.nx) || j >= static_cast<size_t>(samples.ny)) continue;
+    near.num_on_covered += samples.ground[j * static_cast<size_t>(samples.nx) + i] >= kCovered4;
   }
-  return samples;
+  return near;
+}
+
+NearPoints CountInSpace(const std::vector<Eigen::Vector3f>& points,
+                        const std::vector<float>& distances, double gsd) {
+  NearPoints near;
+  std::vector<std::array<int32_t, 3>> cells;
+  for (size_t k = 0; k < points.size(); ++k) {
+    if (distances[k] > 4 * gsd) continue;
+    const Eigen::Array3d cell = (points[k].cast<double>().array() / gsd).floor();
+    cells.push_back({static_cast<int32_t>(cell.x()), static_cast<int32_t>(cell.y()),
+                     static_cast<int32_t>(cell.z())});
+  }
+  near.num_near = near.num_on_covered = cells.size();
+  std::sort(cells.begin(), cells.end());
+  near.num_cells = static_cast<size_t>(std::unique(cells.begin(), cells.end()) - cells.begin());
+  return near;
+}
+
+// Mean number of points in an occupied cell of their own GSD, of those within 4 of it. The sizes of
+// cells go in steps of a quarter octave: points of one place have one GSD, and share their cells.
+double OwnRedundancy(const SurveyTruth& truth, const std::vector<Eigen::Vector3f>& points,
+                     const std::vector<float>& ratios, const std::vector<float>& own_gsd) {
+  const bool is_flat = truth.surface.Object().Empty();
+  std::vector<std::array<int32_t, 4>> cells;
+  for (size_t k = 0; k < points.size(); ++k) {
+    if (ratios[k] > 4) continue;
+    const double octaves = std::log2(static_cast<double>(own_gsd[k]) / truth.gsd);
+    const int32_t level = static_cast<int32_t>(std::lround(4 * octaves));
+    const Eigen::Array3d place = truth.surface.InGround(points[k].cast<double>());
+    const Eigen::Array3d cell = (place / (truth.gsd * std::exp2(0.25 * level))).floor();
+    cells.push_back({level, static_cast<int32_t>(cell.x()), static_cast<int32_t>(cell.y()),
+                     is_flat ? 0 : static_cast<int32_t>(cell.z())});
+  }
+  if (cells.empty()) return 0;
+  std::sort(cells.begin(), cells.end());
+  const auto end = std::unique(cells.begin(), cells.end());
+  return static_cast<double>(cells.size()) / static_cast<double>(end - cells.begin());
 }
 
 void SummariseCoverage(const SurveyTruth& truth, const std::vector<Eigen::Vector3f>& points,
                        const std::vector<float>& distances, const SurfaceSamples& samples,
                        SurveyScore* score) {
-  const HeightField& surface = truth.surface;
-  const double covered = samples.area[kCovered4] + samples.area[kCovered2];
-  score->twice_seen_m2 = covered + samples.area[kBare];
-  if (score->twice_seen_m2 > 0) {
-    score->coverage_2gsd = samples.area[kCovered2] / score->twice_seen_m2;
-    score->coverage_4gsd = covered / score->twice_seen_m2;
-  }
-  const double side = kSampleStep * surface.Grid().step;
-  const size_t cells_x =
-      static_cast<size_t>((surface.Grid().MaxX() - surface.Grid().MinX()) / truth.gsd) + 1;
-  const size_t cells_y =
-      static_cast<size_t>((surface.Grid().MaxY() - surface.Grid().MinY()) / truth.gsd) + 1;
-  std::vector<bool> occupied(cells_x * cells_y, false);
-  size_t num_near = 0, num_cells = 0, num_on_covered = 0;
-  for (size_t k = 0; k < points.size(); ++k) {
-    const double x = points[k].x() - surface.Grid().MinX(),
-                 y = points[k].y() - surface.Grid().MinY();
-    if (distances[k] > 4 * truth.gsd || x < 0 || y < 0) continue;
-    const size_t cx = static_cast<size_t>(x / truth.gsd), cy = static_cast<size_t>(y / truth.gsd);
-    if (cx >= cells_x || cy >= cells_y) continue;
-    ++num_near;
-    num_cells += !occupied[cy * cells_x + cx];
-    occupied[cy * cells_x + cx] = true;
-    const size_t i = static_cast<size_t>(x / side), j = static_cast<size_t>(y / side);
-    if (i >= static_cast<size_t>(samples.nx) || j >= static_cast<size_t>(samples.ny)) continue;
-    num_on_covered += samples.state[j * static_cast<size_t>(samples.nx) + i] >= kCovered4;
-  }
+  score->twice_seen_m2 = SeenArea(samples.twice_seen);
+  score->coverage_2gsd = CoveredShare(samples.twice_seen, kCovered2);
+  score->coverage_4gsd = CoveredShare(samples.twice_seen, kCovered4);
+  score->parallax_seen_m2 = SeenArea(samples.parallax);
+  score->parallax_coverage_2gsd = CoveredShare(samples.parallax, kCovered2);
+  score->parallax_coverage_4gsd = CoveredShare(samples.parallax, kCovered4);
+  const NearPoints near = truth.surface.Object().Empty()
+                              ? CountOnGround(truth, points, distances, samples)
+                              : CountInSpace(points, distances, truth.gsd);
+  const double covered = samples.twice_seen[kCovered4] + samples.twice_seen[kCovered2];
   if (covered > 0) {
-    score->points_per_cm2 = static_cast<double>(num_on_covered) / (covered * 1e4);
-    score->points_per_gsd2 = static_cast<double>(num_on_covered) / covered * truth.gsd * truth.gsd;
+    const double num = static_cast<double>(near.num_on_covered);
+    score->points_per_cm2 = num / (covered * 1e4);
+    score->points_per_gsd2 = num / covered * truth.gsd * truth.gsd;
   }
-  if (num_cells > 0) {
-    score->redundancy = static_cast<double>(num_near) / static_cast<double>(num_cells);
+  if (near.num_cells > 0) {
+    score->redundancy = static_cast<double>(near.num_near) / static_cast<double>(near.num_cells);
   }
 }
 
 }  // namespace
 
-SurveyScore ScoreSurvey(const SurveyTruth& truth, const SparseModel& model,
-                        std::vector<Eigen::Vector3f> points, const ScoreOptions& options) {
+SurveyScore ScoreSurvey(const SurveyTruth& truth, const SparseModel& model, ScoredCloud cloud,
+                        const ScoreOptions& options) {
+  std::vector<Eigen::Vector3f>& points = cloud.points;
   if (points.empty()) throw Error("the cloud", "holds no point", "densify the model first");
+  SEAPOINT_CHECK(cloud.view_gsd.empty() || cloud.view_gsd.size() == points.size());
   SurveyScore score;
   score.gsd = truth.gsd;
   score.refined = options.refine;
@@ -211,10 +179,23 @@ SurveyScore ScoreSurvey(const SurveyTruth& truth, const SparseModel& model,
   for (Eigen::Vector3f& p : points) p = (truth_from_model * p.cast<double>()).cast<float>();
 
   const std::vector<float> distances =
-      Distances(truth.surface, points, kLimitGsd * truth.gsd, options.num_threads);
-  SummariseDistances(distances, truth.gsd, &score);
-  const PointBins bins(truth.surface, points, 4 * truth.gsd);
-  const SurfaceSamples samples = SampleSurface(truth, bins, options.num_threads);
+      ForEachPoint(points, options.num_threads, [&](const Eigen::Vector3d& point) {
+        return truth.surface.Distance(point, kLimitGsd * truth.gsd);
+      });
+  const SurfaceVisibility visibility(truth);
+  const std::vector<float> own_gsd = ForEachPoint(
+      points, options.num_threads,
+      [&](const Eigen::Vector3d& point) { return OwnGsd(visibility, point, truth.gsd); });
+  score.accuracy = Accuracy(distances, truth.gsd);
+  const std::vector<float> own_ratios = Ratios(distances, own_gsd);
+  score.own_accuracy = Accuracy(own_ratios, 1);
+  score.own_redundancy = OwnRedundancy(truth, points, own_ratios, own_gsd);
+  score.has_views = !cloud.view_gsd.empty();
+  if (score.has_views) {
+    for (float& gsd : cloud.view_gsd) gsd *= static_cast<float>(score.scale);
+    score.view_accuracy = Accuracy(Ratios(distances, cloud.view_gsd), 1);
+  }
+  const SurfaceSamples samples = SampleSurface(truth, points, options.num_threads);
   SummariseCoverage(truth, points, distances, samples, &score);
   return score;
 }

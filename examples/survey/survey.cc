@@ -5,7 +5,10 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/parallel.h"
-#include "examples/survey/renderer.h"
+#include "examples/survey/paths/survey_camera.h"
+#include "examples/survey/paths/survey_path.h"
+#include "examples/survey/render/renderer.h"
+#include "examples/survey/scene/landmarks.h"
 #include "examples/survey/scene/seabed.h"
 #include "examples/survey/visibility.h"
 
@@ -13,15 +16,38 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr double kFarT = 1e3;
-constexpr size_t kMaxAlbedoBytes = size_t{768} << 20;
 constexpr int kPointsPerImage = 300;
 
 Seabed MakeSeabed(const SurveyOptions& options) {
   return Seabed({static_cast<uint64_t>(options.seed), options.relief, NominalGsd(options)});
 }
 
-// Mean depth over mean focal length, from a raster of rays in every picture.
-double MeasureGsd(const SparseModel& model, const HeightField& surface) {
+LandmarkOptions BoulderOptions(const SurveyOptions& options) {
+  return {static_cast<uint64_t>(options.seed), BoulderRadius(options), BoulderHeight(options),
+          options.relief, NominalGsd(options)};
+}
+
+LandmarkOptions StatueOptions(const SurveyOptions& options) {
+  return {static_cast<uint64_t>(options.seed), StatueRadius(options), StatueHeight(options),
+          options.relief, NominalGsd(options)};
+}
+
+Surface MakeSurface(const SurveyOptions& options, const SparseModel& model) {
+  const double lowest = -1.2 * options.relief - 0.05;
+  const Rectangle box = SurveyArea(options, model, lowest);
+  HeightField ground = MakeHeightField(MakeSeabed(options), box.min_x, box.min_y, box.max_x,
+                                       box.max_y, options.num_threads);
+  SEAPOINT_CHECK(ground.MinHeight() > lowest);
+  Sheet object;
+  if (options.path == SurveyPath::kCircle) ground = WithBoulder(ground, BoulderOptions(options));
+  if (options.path == SurveyPath::kStatue) {
+    object = MakeStatue(StatueOptions(options), ground.Height(0, 0));
+  }
+  return Surface(std::move(ground), WorldFromGround(options), std::move(object));
+}
+
+// From a raster of rays in every picture.
+double MeasureGsd(const SparseModel& model, const Surface& surface, double max_range) {
   constexpr int kSteps = 16;
   double sum = 0;
   int count = 0;
@@ -32,11 +58,10 @@ double MeasureGsd(const SparseModel& model, const HeightField& surface) {
       const auto ray = camera.CamFromImg({camera.width * (k % kSteps + 0.5) / kSteps,
                                           camera.height * (k / kSteps + 0.5) / kSteps});
       if (!ray) continue;
-      // The ray has z = 1 in the camera: t is the depth.
       const auto t = surface.IntersectRay(world_from_cam.translation,
                                           world_from_cam.rotation * ray->homogeneous(), 0, kFarT);
-      if (!t) continue;
-      sum += *t / camera.MeanFocal();
+      if (!t || *t * ray->homogeneous().norm() > max_range) continue;
+      sum += GsdAt(camera, *t * ray->homogeneous());
       ++count;
     }
   }
@@ -45,8 +70,9 @@ double MeasureGsd(const SparseModel& model, const HeightField& surface) {
 }
 
 // A point under a random pixel of every picture in turn, kept when a second picture sees it too.
-void AddExactPoints(const SurveyOptions& options, const HeightField& surface, SparseModel* model) {
-  const SurfaceVisibility visibility(*model, surface);
+void AddExactPoints(const SurveyOptions& options, SurveyTruth* truth) {
+  const SurfaceVisibility visibility(*truth);
+  SparseModel* model = &truth->model;
   const size_t num_images = model->images.size();
   for (size_t k = 0; k < kPointsPerImage * num_images; ++k) {
     const PosedImage& seed_image = model->images[k % num_images];
@@ -58,15 +84,14 @@ void AddExactPoints(const SurveyOptions& options, const HeightField& surface, Sp
     if (!ray) continue;
     const Rigid3d world_from_cam = seed_image.cam_from_world.Inverse();
     const Eigen::Vector3d direction = world_from_cam.rotation * ray->homogeneous();
-    const auto t = surface.IntersectRay(world_from_cam.translation, direction, 0, kFarT);
-    if (!t) continue;
+    const auto hit = truth->surface.Trace(world_from_cam.translation, direction, 0, kFarT);
+    if (!hit) continue;
     SparsePoint point;
-    point.xyz = world_from_cam.translation + *t * direction;
+    point.xyz = hit->xyz;
     point.rgb = {128, 128, 128};
-    const Eigen::Vector3d normal = surface.Normal(point.xyz.x(), point.xyz.y());
     std::vector<std::pair<size_t, Eigen::Vector2d>> views;
     for (size_t i = 0; i < num_images; ++i) {
-      if (const auto pixel = visibility.Project(i, point.xyz, normal))
+      if (const auto pixel = visibility.Project(i, point.xyz, hit->normal))
         views.emplace_back(i, *pixel);
     }
     if (views.size() < 2) continue;
@@ -88,27 +113,17 @@ SurveyTruth MakeSurveyTruth(const SurveyOptions& options) {
   if (!problem.empty()) throw UsageError(problem);
   SurveyTruth truth;
   truth.model = PlanSurvey(options);
-  const double lowest = -1.2 * options.relief - 0.05;
-  Rectangle box =
-      Footprint(truth.model.cameras.at(1), truth.model.images[0].cam_from_world, lowest);
-  for (const PosedImage& image : truth.model.images) {
-    box = Union(box, Footprint(truth.model.cameras.at(1), image.cam_from_world, lowest));
-  }
-  truth.surface = MakeHeightField(MakeSeabed(options), box.min_x, box.min_y, box.max_x, box.max_y,
-                                  options.num_threads);
-  SEAPOINT_CHECK(truth.surface.MinHeight() > lowest);
-  truth.gsd = MeasureGsd(truth.model, truth.surface);
-  AddExactPoints(options, truth.surface, &truth.model);
+  truth.max_range = MaxRange(options);
+  truth.surface = MakeSurface(options, truth.model);
+  truth.gsd = MeasureGsd(truth.model, truth.surface, truth.max_range);
+  AddExactPoints(options, &truth);
   return truth;
 }
 
 void RenderSurvey(const SurveyOptions& options, const SurveyTruth& truth,
                   const std::function<void(const PosedImage&, ColorImage&&)>& take) {
   const Seabed seabed = MakeSeabed(options);
-  const HeightField& surface = truth.surface;
-  AlbedoMap albedo(seabed, surface.Grid().MinX(), surface.Grid().MinY(), surface.Grid().MaxX(),
-                   surface.Grid().MaxY(), kMaxAlbedoBytes);
-  Renderer renderer(options, truth.model.cameras.at(1), surface, &albedo);
+  Renderer renderer(options, truth.model.cameras.at(1), truth.surface, seabed);
   for (const PosedImage& image : truth.model.images) {
     take(image, renderer.Render(image, options.num_threads));
   }

@@ -3,18 +3,20 @@
 
 #include <filesystem>
 #include <functional>
+#include <limits>
 
 #include "colmap_seapoint/base/image.h"
 #include "colmap_seapoint/base/sparse_model.h"
-#include "examples/survey/scene/height_field.h"
-#include "examples/survey/survey_path.h"
+#include "examples/survey/paths/survey_options.h"
+#include "examples/survey/scene/surface.h"
 
 namespace colmap_seapoint {
 
 struct SurveyTruth {
-  SparseModel model;    // exact cameras; some exact points with the pictures that see them
-  HeightField surface;  // exact surface
-  double gsd = 0;       // metres a pixel: mean depth of the surface over mean focal length
+  SparseModel model;  // exact cameras; some exact points with the pictures that see them
+  Surface surface;    // exact surface, in the model's frame
+  double gsd = 0;     // metres a pixel: mean over all that the pictures show (GsdAt)
+  double max_range = std::numeric_limits<double>::infinity();  // metres; farther counts as unseen
 };
 
 // Cameras, surface and points; no picture yet. Throws UsageError for illegal options.
@@ -28,7 +30,8 @@ void RenderSurvey(const SurveyOptions& options, const SurveyTruth& truth,
 //   images/                 the pictures
 //   truth/sparse/           cameras.txt, images.txt, points3D.txt
 //   truth/surface.bin       heights, float32 little-endian, row by row from min y
-//   truth/surface.json      first node, number of nodes, cell size
+//   truth/surface.json      first node, number of nodes, cell size; a wall's turn
+//   truth/object.bin        x, y, z of the object's nodes, float32, row by row, if there is one
 //   truth/survey.json       options and gsd
 void WriteSurveyTruth(const std::filesystem::path& dir, const SurveyOptions& options,
                       const SurveyTruth& truth);

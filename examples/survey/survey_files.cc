@@ -1,7 +1,11 @@
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
@@ -21,6 +25,10 @@ nlohmann::ordered_json ReadJson(const std::filesystem::path& path) {
   return json;
 }
 
+const char* CameraModelName(const SurveyOptions& options) {
+  return FindCameraModel(static_cast<int>(options.camera_model))->name;
+}
+
 nlohmann::ordered_json OptionsJson(const SurveyOptions& o) {
   nlohmann::ordered_json json = {{"seed", o.seed},
                                  {"num_strips", o.num_strips},
@@ -38,7 +46,13 @@ nlohmann::ordered_json OptionsJson(const SurveyOptions& o) {
                                  {"noise", o.noise},
                                  {"jitter", o.jitter},
                                  {"image_format", o.image_format}};
-  if (o.revisit > 0) json["revisit"] = o.revisit;  // surveys without one keep their bytes
+  // What came later is written where it is used: surveys without it keep their bytes.
+  if (o.revisit > 0) json["revisit"] = o.revisit;
+  if (o.path != SurveyPath::kStrips) json["path"] = SurveyPathName(o.path);
+  if (o.path == SurveyPath::kSwim) json["pitch"] = o.pitch_deg;
+  if (o.roll_deg != 0) json["roll"] = o.roll_deg;
+  if (o.max_range > 0) json["max_range"] = o.max_range;
+  if (o.camera_model != CameraModel::kOpenCV) json["camera_model"] = CameraModelName(o);
   return json;
 }
 
@@ -53,29 +67,93 @@ std::string ParamsText(const SparseModel& model) {
   return text;
 }
 
-HeightField ReadSurface(const std::filesystem::path& dir) {
+std::vector<float> ReadFloats(const std::filesystem::path& path, size_t count) {
+  std::error_code code;
+  const auto size = std::filesystem::file_size(path, code);
+  if (code || size != count * sizeof(float)) {
+    throw Error(path.string(), "is missing or has another size than surface.json says", kRemedy);
+  }
+  std::vector<float> values(count);
+  std::ifstream file(path, std::ios::binary);
+  file.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(size));
+  if (!file) throw Error(path.string(), "cannot be read", kRemedy);
+  return values;
+}
+
+Rigid3d ReadTurn(const nlohmann::ordered_json& json) {
+  Rigid3d world_from_ground;
+  if (!json.contains("world_from_ground")) return world_from_ground;
+  const auto numbers = json["world_from_ground"].get<std::array<double, 7>>();
+  world_from_ground.rotation =
+      Eigen::Quaterniond(numbers[0], numbers[1], numbers[2], numbers[3]).normalized();
+  world_from_ground.translation = {numbers[4], numbers[5], numbers[6]};
+  return world_from_ground;
+}
+
+Sheet ReadObject(const std::filesystem::path& dir, const nlohmann::ordered_json& json) {
+  if (!json.contains("object")) return Sheet();
+  const auto& object = json["object"];
+  const int nx = object.at("num_nodes_x"), ny = object.at("num_nodes_y");
+  if (nx < 2 || ny < 2) throw Error((dir / "surface.json").string(), "has no object", kRemedy);
+  const size_t count = static_cast<size_t>(nx) * static_cast<size_t>(ny);
+  const std::vector<float> values = ReadFloats(dir / "object.bin", 3 * count);
+  std::vector<Eigen::Vector3f> nodes(count);
+  for (size_t i = 0; i < count; ++i) nodes[i] = Eigen::Map<const Eigen::Vector3f>(&values[3 * i]);
+  return Sheet(nx, ny, std::move(nodes), object.at("cell"));
+}
+
+Surface ReadSurface(const std::filesystem::path& dir) {
   const nlohmann::ordered_json json = ReadJson(dir / "surface.json");
-  GridSpec grid;
   try {
+    GridSpec grid;
     grid.ix0 = json.at("first_node_x");
     grid.iy0 = json.at("first_node_y");
     grid.nx = json.at("num_nodes_x");
     grid.ny = json.at("num_nodes_y");
     grid.step = json.at("cell");
+    if (grid.nx < 2 || grid.ny < 2) {
+      throw Error((dir / "surface.json").string(), "has no nodes", kRemedy);
+    }
+    return Surface(HeightField(grid, ReadFloats(dir / "surface.bin", grid.Size())), ReadTurn(json),
+                   ReadObject(dir, json));
   } catch (const nlohmann::json::exception& e) {
     throw Error((dir / "surface.json").string(), e.what(), kRemedy);
   }
-  const std::filesystem::path path = dir / "surface.bin";
-  std::error_code code;
-  const auto size = std::filesystem::file_size(path, code);
-  if (code || grid.nx < 2 || grid.ny < 2 || size != grid.Size() * sizeof(float)) {
-    throw Error(path.string(), "is missing or has another size than surface.json says", kRemedy);
+}
+
+nlohmann::ordered_json SurfaceJson(const Surface& surface) {
+  const GridSpec& grid = surface.Ground().Grid();
+  nlohmann::ordered_json json = {
+      {"what",
+       "node (i, j) lies at x = (first_node_x + i) * cell, y = (first_node_y + j) * cell; "
+       "surface.bin holds its z; bilinear between the nodes"},
+      {"first_node_x", grid.ix0},
+      {"first_node_y", grid.iy0},
+      {"num_nodes_x", grid.nx},
+      {"num_nodes_y", grid.ny},
+      {"cell", grid.step},
+      {"min_z", surface.Ground().MinHeight()},
+      {"max_z", surface.Ground().MaxHeight()}};
+  const Rigid3d& turn = surface.WorldFromGround();
+  if (!turn.rotation.vec().isZero(0)) {
+    json["world_from_ground"] = {turn.rotation.w(),   turn.rotation.x(),    turn.rotation.y(),
+                                 turn.rotation.z(),   turn.translation.x(), turn.translation.y(),
+                                 turn.translation.z()};
   }
-  Field heights(grid.Size());
-  std::ifstream file(path, std::ios::binary);
-  file.read(reinterpret_cast<char*>(heights.data()), static_cast<std::streamsize>(size));
-  if (!file) throw Error(path.string(), "cannot be read", kRemedy);
-  return HeightField(grid, std::move(heights));
+  if (!surface.Object().Empty()) {
+    json["object"] = {
+        {"what", "object.bin holds x, y, z of the nodes; two triangles a cell: 00 10 11, 00 11 01"},
+        {"num_nodes_x", surface.Object().NumX()},
+        {"num_nodes_y", surface.Object().NumY()},
+        {"cell", surface.Object().Step()}};
+  }
+  return json;
+}
+
+void WriteFloats(const std::filesystem::path& path, const float* values, size_t count) {
+  AtomicFile file(path);
+  file.Write(values, count * sizeof(float));
+  file.Commit();
 }
 
 }  // namespace
@@ -85,28 +163,18 @@ void WriteSurveyTruth(const std::filesystem::path& dir, const SurveyOptions& opt
   const std::filesystem::path truth_dir = dir / "truth";
   std::filesystem::create_directories(truth_dir);
   WriteSparseModelText(truth_dir / "sparse", truth.model);
-  AtomicFile surface(truth_dir / "surface.bin");
-  surface.Write(truth.surface.Heights().data(), truth.surface.Heights().size() * sizeof(float));
-  surface.Commit();
-  const GridSpec& grid = truth.surface.Grid();
-  const nlohmann::ordered_json surface_json = {
-      {"what",
-       "node (i, j) lies at x = (first_node_x + i) * cell, y = (first_node_y + j) * cell; "
-       "surface.bin holds its z; bilinear between the nodes"},
-      {"first_node_x", grid.ix0},
-      {"first_node_y", grid.iy0},
-      {"num_nodes_x", grid.nx},
-      {"num_nodes_y", grid.ny},
-      {"cell", grid.step},
-      {"min_z", truth.surface.MinHeight()},
-      {"max_z", truth.surface.MaxHeight()}};
-  WriteTextFile(truth_dir / "surface.json", surface_json.dump(2) + "\n");
-  const nlohmann::ordered_json survey_json = {{"gsd", truth.gsd},
-                                              {"unit", "metre"},
-                                              {"num_images", truth.model.images.size()},
-                                              {"camera_model", "OPENCV"},
-                                              {"camera_params", ParamsText(truth.model)},
-                                              {"options", OptionsJson(options)}};
+  const Field& heights = truth.surface.Ground().Heights();
+  WriteFloats(truth_dir / "surface.bin", heights.data(), heights.size());
+  const std::vector<Eigen::Vector3f>& nodes = truth.surface.Object().Nodes();
+  if (!nodes.empty()) WriteFloats(truth_dir / "object.bin", nodes[0].data(), 3 * nodes.size());
+  WriteTextFile(truth_dir / "surface.json", SurfaceJson(truth.surface).dump(2) + "\n");
+  nlohmann::ordered_json survey_json = {{"gsd", truth.gsd},
+                                        {"unit", "metre"},
+                                        {"num_images", truth.model.images.size()},
+                                        {"camera_model", CameraModelName(options)},
+                                        {"camera_params", ParamsText(truth.model)},
+                                        {"options", OptionsJson(options)}};
+  if (std::isfinite(truth.max_range)) survey_json["max_range"] = truth.max_range;
   WriteTextFile(truth_dir / "survey.json", survey_json.dump(2) + "\n");
 }
 
@@ -118,6 +186,9 @@ SurveyTruth ReadSurveyTruth(const std::filesystem::path& dir) {
     throw Error((truth_dir / "survey.json").string(), "has no gsd", kRemedy);
   }
   truth.gsd = json["gsd"];
+  if (json.contains("max_range") && json["max_range"].is_number()) {
+    truth.max_range = json["max_range"];
+  }
   truth.model = ReadSparseModel(truth_dir / "sparse");
   truth.surface = ReadSurface(truth_dir);
   return truth;

@@ -3,60 +3,86 @@
 #include <algorithm>
 #include <cmath>
 
+#include "examples/survey/paths/survey_camera.h"
+
 namespace colmap_seapoint {
 namespace {
 
-const double kMinCosine = std::cos(80 * 3.14159265358979323846 / 180);
-
-double MaxTangent(const Camera& camera) {
-  double max = 0;
-  for (double x : {0.0, 0.5, 1.0}) {
-    for (double y : {0.0, 0.5, 1.0}) {
-      const auto ray = camera.CamFromImg({x * camera.width, y * camera.height});
-      if (ray) max = std::max(max, ray->norm());
-    }
-  }
-  return 1.02 * max;
-}
+constexpr double kRadPerDeg = 3.14159265358979323846 / 180;
+const double kMinCosine = std::cos(80 * kRadPerDeg);
+const double kParallaxCosine = std::cos(kMinParallaxDeg * kRadPerDeg);
 
 }  // namespace
 
-SurfaceVisibility::SurfaceVisibility(const SparseModel& model, const HeightField& surface)
-    : surface_(&surface) {
-  for (const PosedImage& image : model.images) {
-    const Camera& camera = model.cameras.at(image.camera_id);
+SurfaceVisibility::SurfaceVisibility(const SurveyTruth& truth)
+    : surface_(&truth.surface), max_range_(truth.max_range) {
+  for (const PosedImage& image : truth.model.images) {
+    const Camera& camera = truth.model.cameras.at(image.camera_id);
     views_.push_back(
         {image.cam_from_world, image.cam_from_world.OriginInSource(), &camera, MaxTangent(camera)});
   }
 }
 
-std::optional<Eigen::Vector2d> SurfaceVisibility::Project(size_t image_idx,
-                                                          const Eigen::Vector3d& point,
-                                                          const Eigen::Vector3d& normal) const {
-  const View& view = views_[image_idx];
+std::optional<Eigen::Vector2d> SurfaceVisibility::InFrame(const View& view,
+                                                          const Eigen::Vector3d& point) const {
   const Eigen::Vector3d in_cam = view.cam_from_world * point;
   if (in_cam.z() <= 0 || in_cam.head<2>().norm() > view.max_tangent * in_cam.z()) {
     return std::nullopt;
   }
   const auto pixel = view.camera->ImgFromCam(in_cam);
   if (!pixel || !view.camera->InImage(*pixel)) return std::nullopt;
+  if ((view.centre - point).norm() > max_range_) return std::nullopt;
+  return pixel;
+}
+
+std::optional<Eigen::Vector2d> SurfaceVisibility::Project(size_t image_idx,
+                                                          const Eigen::Vector3d& point,
+                                                          const Eigen::Vector3d& normal) const {
+  const View& view = views_[image_idx];
+  const auto pixel = InFrame(view, point);
+  if (!pixel) return std::nullopt;
   const Eigen::Vector3d to_camera = view.centre - point;
   const double distance = to_camera.norm();
   if (normal.dot(to_camera) < kMinCosine * distance) return std::nullopt;
   // Start a hundredth of a cell off the surface, so that the point does not hide itself.
-  const double start = 0.01 * surface_->Grid().step / distance;
-  const Eigen::Vector3d lifted = point + 0.01 * surface_->Grid().step * normal;
+  const double start = 0.01 * surface_->CellSize() / distance;
+  const Eigen::Vector3d lifted = point + 0.01 * surface_->CellSize() * normal;
   if (surface_->IntersectRay(lifted, view.centre - lifted, start, 1)) return std::nullopt;
   return pixel;
 }
 
-int SurfaceVisibility::CountViews(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
-                                  int limit) const {
-  int num_views = 0;
-  for (size_t i = 0; i < views_.size() && num_views < limit; ++i) {
-    num_views += Project(i, point, normal).has_value();
+Sighting SurfaceVisibility::SightingIn(const View& view, const Eigen::Vector3d& point) const {
+  return {GsdAt(*view.camera, view.cam_from_world * point), (view.centre - point).normalized()};
+}
+
+std::vector<Sighting> SurfaceVisibility::Sightings(const Eigen::Vector3d& point,
+                                                   const Eigen::Vector3d& normal) const {
+  std::vector<Sighting> sightings;
+  for (size_t i = 0; i < views_.size(); ++i) {
+    if (Project(i, point, normal)) sightings.push_back(SightingIn(views_[i], point));
   }
-  return num_views;
+  return sightings;
+}
+
+std::vector<Sighting> SurfaceVisibility::InFrames(const Eigen::Vector3d& point) const {
+  std::vector<Sighting> sightings;
+  for (const View& view : views_) {
+    if (InFrame(view, point)) sightings.push_back(SightingIn(view, point));
+  }
+  return sightings;
+}
+
+std::optional<double> BestPairGsd(std::vector<Sighting> sightings) {
+  std::sort(sightings.begin(), sightings.end(),
+            [](const Sighting& a, const Sighting& b) { return a.gsd < b.gsd; });
+  for (size_t k = 1; k < sightings.size(); ++k) {
+    for (size_t m = 0; m < k; ++m) {
+      if (sightings[m].to_camera.dot(sightings[k].to_camera) <= kParallaxCosine) {
+        return sightings[k].gsd;
+      }
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace colmap_seapoint

@@ -1,26 +1,34 @@
-// Which pictures truly see a place of the surface.
+// Which pictures truly see a place of the surface, and how well.
 #pragma once
 
 #include <optional>
 #include <vector>
 
-#include "colmap_seapoint/base/sparse_model.h"
-#include "examples/survey/scene/height_field.h"
+#include "examples/survey/survey.h"
 
 namespace colmap_seapoint {
 
+// A place in one picture.
+struct Sighting {
+  double gsd = 0;             // metres a pixel there
+  Eigen::Vector3d to_camera;  // unit
+};
+
 class SurfaceVisibility {
  public:
-  // Keeps references: both must outlive it.
-  SurfaceVisibility(const SparseModel& model, const HeightField& surface);
+  // Keeps references: the truth must outlive it (pixels and points of its model may change).
+  explicit SurfaceVisibility(const SurveyTruth& truth);
 
   // The pixel of a surface point in picture `image_idx`; nullopt when it lies outside the picture,
-  // is hidden by relief, or is seen more than 80 degrees from its normal. Any number of threads.
+  // is hidden, is too far, or is seen more than 80 degrees from its normal. Any number of threads.
   std::optional<Eigen::Vector2d> Project(size_t image_idx, const Eigen::Vector3d& point,
                                          const Eigen::Vector3d& normal) const;
 
-  // The number of pictures in which the place is seen, counted up to `limit`.
-  int CountViews(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, int limit) const;
+  // All pictures that see it.
+  std::vector<Sighting> Sightings(const Eigen::Vector3d& point,
+                                  const Eigen::Vector3d& normal) const;
+  // All pictures that hold any point of space within their range; what hides it is not looked for.
+  std::vector<Sighting> InFrames(const Eigen::Vector3d& point) const;
 
  private:
   struct View {
@@ -29,8 +37,19 @@ class SurfaceVisibility {
     const Camera* camera;
     double max_tangent;  // of the angle from the axis; beyond it the lens model means nothing
   };
-  const HeightField* surface_;
+  std::optional<Eigen::Vector2d> InFrame(const View& view, const Eigen::Vector3d& point) const;
+  Sighting SightingIn(const View& view, const Eigen::Vector3d& point) const;
+
+  const Surface* surface_;
+  double max_range_;
   std::vector<View> views_;
 };
+
+inline constexpr double kMinParallaxDeg = 3;
+
+// The best that two pictures can do: over all pairs of sightings whose directions are
+// kMinParallaxDeg or more apart, the least of the larger GSD of the two. nullopt without such a
+// pair.
+std::optional<double> BestPairGsd(std::vector<Sighting> sightings);
 
 }  // namespace colmap_seapoint

@@ -11,7 +11,8 @@
 #include <vector>
 
 #include "colmap_seapoint/base/error.h"
-#include "examples/survey/renderer.h"
+#include "examples/survey/paths/survey_path.h"
+#include "examples/survey/render/renderer.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -105,7 +106,7 @@ TEST(LensTableTest, IsExactToTwoThousandthsOfAPixel) {
   for (int k = 0; k < 2000; ++k) {
     const Eigen::Vector2d pixel(Uniform(Hash(1, k)) * camera.width,
                                 Uniform(Hash(2, k)) * camera.height);
-    const auto back = camera.ImgFromCam(lens.Ray(pixel.x(), pixel.y()));
+    const auto back = camera.ImgFromCam(*lens.Ray(pixel.x(), pixel.y()));
     ASSERT_TRUE(back);
     EXPECT_LT((*back - pixel).norm(), 2e-3);
   }
@@ -118,7 +119,7 @@ TEST(SurveyTest, ExactPointsLieOnTheSurfaceAndInTheirPictures) {
   EXPECT_NEAR(truth.gsd, NominalGsd(options), 0.2 * NominalGsd(options));
   const Camera& camera = truth.model.cameras.at(1);
   for (const auto& [id, point] : truth.model.points3D) {
-    EXPECT_NEAR(point.xyz.z(), truth.surface.Height(point.xyz.x(), point.xyz.y()), 1e-6);
+    EXPECT_NEAR(point.xyz.z(), truth.surface.Ground().Height(point.xyz.x(), point.xyz.y()), 1e-6);
     EXPECT_GE(point.track.size(), 2u);
     for (const auto& element : point.track) {
       const PosedImage& image = truth.model.images[element.image_id - 1];
@@ -216,8 +217,8 @@ TEST(SurveyTest, TruthComesBackFromDisk) {
   WriteSurveyTruth(dir, options, truth);
   const SurveyTruth back = ReadSurveyTruth(dir);
   EXPECT_EQ(back.gsd, truth.gsd);
-  EXPECT_EQ(back.surface.Heights(), truth.surface.Heights());
-  EXPECT_EQ(back.surface.Grid().MinX(), truth.surface.Grid().MinX());
+  EXPECT_EQ(back.surface.Ground().Heights(), truth.surface.Ground().Heights());
+  EXPECT_EQ(back.surface.Ground().Grid().MinX(), truth.surface.Ground().Grid().MinX());
   EXPECT_EQ(back.model.points3D.size(), truth.model.points3D.size());
   EXPECT_LT((back.model.images[4].cam_from_world.OriginInSource() -
              truth.model.images[4].cam_from_world.OriginInSource())

@@ -210,11 +210,11 @@ void AddScore(const LoadedSet& set, const Run& run, int num_threads, DensifyRow*
   ScoreOptions options;
   options.truth_poses = set.truth_poses;
   options.num_threads = num_threads;
-  const SurveyScore score = ScoreSurvey(*set.truth, set.model, run.cloud.points, options);
-  row->within_1gsd = score.share_1gsd;
-  row->within_2gsd = score.share_2gsd;
-  row->within_4gsd = score.share_4gsd;
-  row->median_gsd = score.median_gsd;
+  const SurveyScore score = ScoreSurvey(*set.truth, set.model, {run.cloud.points, {}}, options);
+  row->within_1gsd = score.accuracy.share_1gsd;
+  row->within_2gsd = score.accuracy.share_2gsd;
+  row->within_4gsd = score.accuracy.share_4gsd;
+  row->median_gsd = score.accuracy.median_gsd;
   row->coverage_2gsd = score.coverage_2gsd;
   row->coverage_4gsd = score.coverage_4gsd;
   row->points_per_cm2 = score.points_per_cm2;

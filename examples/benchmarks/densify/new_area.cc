@@ -14,7 +14,7 @@ constexpr double kFarT = 1e3;
 std::vector<PairArea> NewAreas(const SurveyTruth& truth,
                                const std::vector<std::array<size_t, 2>>& pairs, Against against,
                                int num_threads) {
-  const SurfaceVisibility visibility(truth.model, truth.surface);
+  const SurfaceVisibility visibility(truth);
   std::vector<PairArea> areas(pairs.size());
   ParallelFor(num_threads, static_cast<int64_t>(pairs.size()), [&](int64_t index) {
     const auto p = static_cast<size_t>(index);
@@ -28,13 +28,11 @@ std::vector<PairArea> NewAreas(const SurveyTruth& truth,
                                           camera.height * (k / kColumns + 0.5) / kRows});
       if (!ray) continue;
       const Eigen::Vector3d direction = world_from_cam.rotation * ray->homogeneous();
-      const auto t = truth.surface.IntersectRay(world_from_cam.translation, direction, 0, kFarT);
-      if (!t) continue;
-      const Eigen::Vector3d place = world_from_cam.translation + *t * direction;
-      const Eigen::Vector3d normal = truth.surface.Normal(place.x(), place.y());
+      const auto hit = truth.surface.Trace(world_from_cam.translation, direction, 0, kFarT);
+      if (!hit) continue;
       const auto both_see = [&](const std::array<size_t, 2>& pair) {
-        return visibility.Project(pair[0], place, normal) &&
-               visibility.Project(pair[1], place, normal);
+        return visibility.Project(pair[0], hit->xyz, hit->normal) &&
+               visibility.Project(pair[1], hit->xyz, hit->normal);
       };
       if (!both_see(pairs[p])) continue;
       ++num_seen;

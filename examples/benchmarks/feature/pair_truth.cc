@@ -9,6 +9,8 @@
 namespace colmap_seapoint {
 namespace {
 
+constexpr double kFarT = 1e3;
+
 Eigen::Vector2d PixelOf(const SeaPoint& point) { return {point.x, point.y}; }
 
 double Share(size_t part, size_t whole) {
@@ -18,8 +20,7 @@ double Share(size_t part, size_t whole) {
 
 }  // namespace
 
-SurveyOracle::SurveyOracle(const SurveyTruth& truth)
-    : truth_(&truth), visibility_(truth.model, truth.surface) {}
+SurveyOracle::SurveyOracle(const SurveyTruth& truth) : truth_(&truth), visibility_(truth) {}
 
 size_t SurveyOracle::ImageIdx(const std::string& name) const {
   const std::vector<PosedImage>& images = truth_->model.images;
@@ -33,25 +34,23 @@ const Camera& SurveyOracle::CameraOf(size_t image_idx) const {
   return truth_->model.cameras.at(truth_->model.images[image_idx].camera_id);
 }
 
-std::optional<Eigen::Vector3d> SurveyOracle::SurfacePoint(size_t image_idx,
-                                                          const Eigen::Vector2d& pixel) const {
+std::optional<SurfaceHit> SurveyOracle::SurfacePoint(size_t image_idx,
+                                                     const Eigen::Vector2d& pixel) const {
   const auto in_cam = CameraOf(image_idx).CamFromImg(pixel);
   if (!in_cam) return std::nullopt;
   const Rigid3d world_from_cam = truth_->model.images[image_idx].cam_from_world.Inverse();
   const Eigen::Vector3d& origin = world_from_cam.translation;
-  const Eigen::Vector3d direction = world_from_cam.rotation * in_cam->homogeneous();
-  if (direction.z() >= 0) return std::nullopt;
-  const double t_max = 1.001 * (origin.z() - truth_->surface.MinHeight()) / -direction.z();
-  const auto t = truth_->surface.IntersectRay(origin, direction, 0, t_max);
-  if (!t) return std::nullopt;
-  return origin + *t * direction;
+  const auto hit =
+      truth_->surface.Trace(origin, world_from_cam.rotation * in_cam->homogeneous(), 0, kFarT);
+  if (!hit || (hit->xyz - origin).norm() > truth_->max_range) return std::nullopt;
+  return hit;
 }
 
 std::optional<Eigen::Vector2d> SurveyOracle::Transfer(size_t from, const Eigen::Vector2d& pixel,
                                                       size_t to) const {
   const auto point = SurfacePoint(from, pixel);
   if (!point) return std::nullopt;
-  return CameraOf(to).ImgFromCam(truth_->model.images[to].cam_from_world * *point);
+  return CameraOf(to).ImgFromCam(truth_->model.images[to].cam_from_world * point->xyz);
 }
 
 std::optional<Eigen::Vector2d> SurveyOracle::TransferVisible(size_t from,
@@ -59,7 +58,7 @@ std::optional<Eigen::Vector2d> SurveyOracle::TransferVisible(size_t from,
                                                              size_t to) const {
   const auto point = SurfacePoint(from, pixel);
   if (!point) return std::nullopt;
-  return visibility_.Project(to, *point, truth_->surface.Normal(point->x(), point->y()));
+  return visibility_.Project(to, point->xyz, point->normal);
 }
 
 double MatchPrecision(const SurveyOracle& oracle, size_t image1, size_t image2,

@@ -37,7 +37,7 @@ class SurveyOracle {
                                                  size_t to) const;
 
  private:
-  std::optional<Eigen::Vector3d> SurfacePoint(size_t image_idx, const Eigen::Vector2d& pixel) const;
+  std::optional<SurfaceHit> SurfacePoint(size_t image_idx, const Eigen::Vector2d& pixel) const;
 
   const SurveyTruth* truth_;
   SurfaceVisibility visibility_;

@@ -47,6 +47,85 @@ double DistanceToEdge(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
   return (a + t * ab - p).norm();
 }
 
+// Where the ray, inside cell (i, j) from t to t_exit, meets the bilinear patch.
+std::optional<double> CellRoot(const HeightField& field, const LatticeRay& ray, int i, int j,
+                               double t, double t_exit) {
+  const double z00 = field.Node(i, j), z10 = field.Node(i + 1, j), z01 = field.Node(i, j + 1);
+  const double z11 = field.Node(i + 1, j + 1);
+  const auto clearance = [&](double s) {
+    const double u = ray.x + s * ray.dx - i, v = ray.y + s * ray.dy - j;
+    return ray.z + s * ray.dz -
+           (z00 + u * (z10 - z00) + v * (z01 - z00) + u * v * (z00 - z10 - z01 + z11));
+  };
+  return FirstRoot(t, t_exit, clearance(t), clearance(0.5 * (t + t_exit)), clearance(t_exit));
+}
+
+// `local`: the point in units of cells, relative to the first node. The nearest point of the patch
+// lies on an edge (a straight line: closed form) or where the gradient vanishes (Newton).
+double DistanceToCell(const HeightField& field, const Eigen::Vector3d& local, int i, int j,
+                      double best) {
+  const double s = 1 / field.Grid().step;
+  const double z00 = field.Node(i, j) * s, z10 = field.Node(i + 1, j) * s,
+               z01 = field.Node(i, j + 1) * s;
+  const double z11 = field.Node(i + 1, j + 1) * s;
+  const Eigen::Vector3d p = local - Eigen::Vector3d(i, j, 0);
+  const auto outside = [](double x, double low, double high) {
+    return std::max({low - x, 0.0, x - high});
+  };
+  const Eigen::Vector3d gap(
+      outside(p.x(), 0, 1), outside(p.y(), 0, 1),
+      outside(p.z(), std::min({z00, z10, z01, z11}), std::max({z00, z10, z01, z11})));
+  if (gap.squaredNorm() >= best * best) return best;
+
+  best = std::min({best, DistanceToEdge(p, {0, 0, z00}, {1, 0, z10}),
+                   DistanceToEdge(p, {0, 1, z01}, {1, 1, z11}),
+                   DistanceToEdge(p, {0, 0, z00}, {0, 1, z01}),
+                   DistanceToEdge(p, {1, 0, z10}, {1, 1, z11})});
+  const double twist = z00 - z10 - z01 + z11;
+  for (const auto& [start_u, start_v] : {std::pair(0.2, 0.2), {0.8, 0.2}, {0.2, 0.8}, {0.8, 0.8}}) {
+    double u = start_u, v = start_v;
+    for (int iteration = 0; iteration < 12; ++iteration) {
+      const double zu = z10 - z00 + v * twist, zv = z01 - z00 + u * twist;
+      const Eigen::Vector3d e(u - p.x(), v - p.y(),
+                              z00 + u * (z10 - z00) + v * (z01 - z00) + u * v * twist - p.z());
+      best = std::min(best, e.norm());
+      const double gu = e.x() + e.z() * zu, gv = e.y() + e.z() * zv;
+      const double a = 1 + zu * zu, c = 1 + zv * zv;
+      double b = zu * zv + e.z() * twist;
+      if (a * c - b * b <= 1e-3 * a * c) b = zu * zv;  // no minimum near: Gauss-Newton
+      const double det = a * c - b * b;
+      const double next_u = std::clamp(u - (c * gu - b * gv) / det, 0.0, 1.0);
+      const double next_v = std::clamp(v - (a * gv - b * gu) / det, 0.0, 1.0);
+      if (std::abs(next_u - u) + std::abs(next_v - v) < 1e-9) break;
+      u = next_u;
+      v = next_v;
+    }
+  }
+  return best;
+}
+
+HeightBlocks MakeBlocks(const HeightField& field, int size) {
+  const GridSpec& grid = field.Grid();
+  const int cells_x = grid.nx - 1, cells_y = grid.ny - 1;
+  HeightBlocks blocks;
+  blocks.size = size;
+  blocks.nx = (cells_x + size - 1) / size;
+  const int ny = (cells_y + size - 1) / size;
+  blocks.max.assign(static_cast<size_t>(blocks.nx) * static_cast<size_t>(ny), field.MinHeight());
+  for (int j = 0; j < grid.ny; ++j) {
+    for (int i = 0; i < grid.nx; ++i) {
+      // A node on the border of blocks belongs to all of them.
+      for (int by = std::max(0, (j - 1) / size); by <= std::min(ny - 1, j / size); ++by) {
+        for (int bx = std::max(0, (i - 1) / size); bx <= std::min(blocks.nx - 1, i / size); ++bx) {
+          float& max = blocks.max[static_cast<size_t>(by * blocks.nx + bx)];
+          max = std::max(max, field.Node(i, j));
+        }
+      }
+    }
+  }
+  return blocks;
+}
+
 }  // namespace
 
 HeightField::HeightField(const GridSpec& grid, Field heights)
@@ -55,30 +134,7 @@ HeightField::HeightField(const GridSpec& grid, Field heights)
   const auto range = std::minmax_element(heights_.begin(), heights_.end());
   min_height_ = *range.first;
   max_height_ = *range.second;
-  BuildLevels();
-}
-
-void HeightField::BuildLevels() {
-  const int cells_x = grid_.nx - 1, cells_y = grid_.ny - 1;
-  for (int size : {4, 16, 64}) {
-    Level level;
-    level.size = size;
-    level.nx = (cells_x + size - 1) / size;
-    const int ny = (cells_y + size - 1) / size;
-    level.max.assign(static_cast<size_t>(level.nx) * static_cast<size_t>(ny), min_height_);
-    for (int j = 0; j < grid_.ny; ++j) {
-      for (int i = 0; i < grid_.nx; ++i) {
-        // A node on the border of blocks belongs to all of them.
-        for (int by = std::max(0, (j - 1) / size); by <= std::min(ny - 1, j / size); ++by) {
-          for (int bx = std::max(0, (i - 1) / size); bx <= std::min(level.nx - 1, i / size); ++bx) {
-            float& max = level.max[static_cast<size_t>(by * level.nx + bx)];
-            max = std::max(max, heights_[grid_.Index(i, j)]);
-          }
-        }
-      }
-    }
-    levels_.push_back(std::move(level));
-  }
+  for (int size : {4, 16, 64}) levels_.push_back(MakeBlocks(*this, size));
 }
 
 double HeightField::Height(double x, double y) const {
@@ -89,10 +145,8 @@ double HeightField::Height(double x, double y) const {
   const int i = std::min(static_cast<int>(gx), grid_.nx - 2);
   const int j = std::min(static_cast<int>(gy), grid_.ny - 2);
   const double u = gx - i, v = gy - j;
-  const double top = heights_[grid_.Index(i, j)] +
-                     u * (heights_[grid_.Index(i + 1, j)] - heights_[grid_.Index(i, j)]);
-  const double bottom = heights_[grid_.Index(i, j + 1)] +
-                        u * (heights_[grid_.Index(i + 1, j + 1)] - heights_[grid_.Index(i, j + 1)]);
+  const double top = Node(i, j) + u * (Node(i + 1, j) - Node(i, j));
+  const double bottom = Node(i, j + 1) + u * (Node(i + 1, j + 1) - Node(i, j + 1));
   return top + v * (bottom - top);
 }
 
@@ -133,23 +187,14 @@ std::optional<double> HeightField::IntersectRay(const Eigen::Vector3d& origin,
     const int bx = static_cast<int>(x) / size, by = static_cast<int>(y) / size;
     const double t_exit = std::min(std::max(ray.ExitT(bx, by, size), t), t_max);
     if (level > 0) {
-      const Level& blocks = levels_[static_cast<size_t>(level - 1)];
+      const HeightBlocks& blocks = levels_[static_cast<size_t>(level - 1)];
       const double lowest = ray.z + ray.dz * (ray.dz < 0 ? t_exit : t);
       if (lowest <= blocks.max[static_cast<size_t>(by * blocks.nx + bx)]) {
         --level;
         continue;
       }
     } else {
-      const double z00 = heights_[grid_.Index(bx, by)], z10 = heights_[grid_.Index(bx + 1, by)],
-                   z01 = heights_[grid_.Index(bx, by + 1)];
-      const double z11 = heights_[grid_.Index(bx + 1, by + 1)];
-      const auto clearance = [&](double s) {
-        const double u = ray.x + s * ray.dx - bx, v = ray.y + s * ray.dy - by;
-        return ray.z + s * ray.dz -
-               (z00 + u * (z10 - z00) + v * (z01 - z00) + u * v * (z00 - z10 - z01 + z11));
-      };
-      const auto root =
-          FirstRoot(t, t_exit, clearance(t), clearance(0.5 * (t + t_exit)), clearance(t_exit));
+      const auto root = CellRoot(*this, ray, bx, by, t, t_exit);
       if (root) return root;
     }
     if (t_exit >= t_max) return std::nullopt;
@@ -157,49 +202,6 @@ std::optional<double> HeightField::IntersectRay(const Eigen::Vector3d& origin,
     level = std::min(level + 1, static_cast<int>(levels_.size()));
   }
   return std::nullopt;
-}
-
-// `local`: the point in units of cells, relative to the first node. The nearest point of the patch
-// lies on an edge (a straight line: closed form) or where the gradient vanishes (Newton).
-double HeightField::DistanceToCell(const Eigen::Vector3d& local, int i, int j, double best) const {
-  const double s = 1 / grid_.step;
-  const double z00 = heights_[grid_.Index(i, j)] * s, z10 = heights_[grid_.Index(i + 1, j)] * s,
-               z01 = heights_[grid_.Index(i, j + 1)] * s;
-  const double z11 = heights_[grid_.Index(i + 1, j + 1)] * s;
-  const Eigen::Vector3d p = local - Eigen::Vector3d(i, j, 0);
-  const auto outside = [](double x, double low, double high) {
-    return std::max({low - x, 0.0, x - high});
-  };
-  const Eigen::Vector3d gap(
-      outside(p.x(), 0, 1), outside(p.y(), 0, 1),
-      outside(p.z(), std::min({z00, z10, z01, z11}), std::max({z00, z10, z01, z11})));
-  if (gap.squaredNorm() >= best * best) return best;
-
-  best = std::min({best, DistanceToEdge(p, {0, 0, z00}, {1, 0, z10}),
-                   DistanceToEdge(p, {0, 1, z01}, {1, 1, z11}),
-                   DistanceToEdge(p, {0, 0, z00}, {0, 1, z01}),
-                   DistanceToEdge(p, {1, 0, z10}, {1, 1, z11})});
-  const double twist = z00 - z10 - z01 + z11;
-  for (const auto& [start_u, start_v] : {std::pair(0.2, 0.2), {0.8, 0.2}, {0.2, 0.8}, {0.8, 0.8}}) {
-    double u = start_u, v = start_v;
-    for (int iteration = 0; iteration < 12; ++iteration) {
-      const double zu = z10 - z00 + v * twist, zv = z01 - z00 + u * twist;
-      const Eigen::Vector3d e(u - p.x(), v - p.y(),
-                              z00 + u * (z10 - z00) + v * (z01 - z00) + u * v * twist - p.z());
-      best = std::min(best, e.norm());
-      const double gu = e.x() + e.z() * zu, gv = e.y() + e.z() * zv;
-      const double a = 1 + zu * zu, c = 1 + zv * zv;
-      double b = zu * zv + e.z() * twist;
-      if (a * c - b * b <= 1e-3 * a * c) b = zu * zv;  // no minimum near: Gauss-Newton
-      const double det = a * c - b * b;
-      const double next_u = std::clamp(u - (c * gu - b * gv) / det, 0.0, 1.0);
-      const double next_v = std::clamp(v - (a * gv - b * gu) / det, 0.0, 1.0);
-      if (std::abs(next_u - u) + std::abs(next_v - v) < 1e-9) break;
-      u = next_u;
-      v = next_v;
-    }
-  }
-  return best;
 }
 
 double HeightField::Distance(const Eigen::Vector3d& point, double limit) const {
@@ -222,7 +224,7 @@ double HeightField::Distance(const Eigen::Vector3d& point, double limit) const {
       const bool whole_row = std::abs(j - cj) == ring;
       for (int i = ci - ring; i <= ci + ring; i += whole_row || ring == 0 ? 1 : 2 * ring) {
         if (i < 0 || j < 0 || i >= grid_.nx - 1 || j >= grid_.ny - 1) continue;
-        best = DistanceToCell(local, i, j, best);
+        best = DistanceToCell(*this, local, i, j, best);
       }
     }
   }

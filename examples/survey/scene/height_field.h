@@ -11,6 +11,13 @@
 
 namespace colmap_seapoint {
 
+// The largest height in every block of `size` x `size` cells: a ray above it skips the block.
+struct HeightBlocks {
+  int size = 1;
+  int nx = 0;
+  std::vector<float> max;
+};
+
 class HeightField {
  public:
   HeightField() = default;
@@ -21,6 +28,10 @@ class HeightField {
   const Field& Heights() const { return heights_; }
   float MinHeight() const { return min_height_; }
   float MaxHeight() const { return max_height_; }
+  float Node(int i, int j) const {
+    return heights_[static_cast<size_t>(j) * static_cast<size_t>(grid_.nx) +
+                    static_cast<size_t>(i)];
+  }
 
   // Outside the field: the height of the nearest place on its edge.
   double Height(double x, double y) const;
@@ -37,19 +48,11 @@ class HeightField {
   double Distance(const Eigen::Vector3d& point, double limit) const;
 
  private:
-  struct Level {  // largest height in every block of `size` x `size` cells
-    int size;
-    int nx;
-    std::vector<float> max;
-  };
-  void BuildLevels();
-  double DistanceToCell(const Eigen::Vector3d& local, int i, int j, double best) const;
-
   GridSpec grid_;
   Field heights_;
   float min_height_ = 0;
   float max_height_ = 0;
-  std::vector<Level> levels_;  // fine to coarse
+  std::vector<HeightBlocks> levels_;  // fine to coarse
 };
 
 }  // namespace colmap_seapoint

@@ -1,4 +1,4 @@
-#include "examples/survey/scene/water.h"
+#include "examples/survey/render/water.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,6 +54,7 @@ Water MakeWater(double turbidity, int width) {
   Water water;
   water.attenuation = Eigen::Array3f(0.28f, 0.07f, 0.09f) + t * Eigen::Array3f(0.34f, 0.26f, 0.36f);
   water.veil = t * Eigen::Array3f(0.10f, 0.20f, 0.19f);
+  water.open = (0.3f + t) * Eigen::Array3f(0.012f, 0.070f, 0.085f);
   water.halo_share = 0.5 * turbidity;
   water.halo_sigma = (3 + 6 * turbidity) * width / kReferenceWidth;
   return water;

@@ -12,6 +12,7 @@ namespace colmap_seapoint {
 struct Water {
   Eigen::Array3f attenuation;  // 1/metre, red green blue
   Eigen::Array3f veil;         // backscatter of an infinite column, relative to white paper
+  Eigen::Array3f open;         // what water shows with nothing behind it, relative to white paper
   double halo_share = 0;       // share of the light that forward scattering spreads out
   double halo_sigma = 0;       // pixels
 };
