@@ -17,13 +17,6 @@ struct CompletionCandidate {
   View view;
 };
 
-// Range of the surface in every cell of the picture: what is reconstructed there, and elsewhere
-// that of the nearest cell that is reconstructed or holds a triangulated point. All 0 when there is
-// neither. (The mapper drops points that only two pictures see, so the rim, which matters most
-// here, has none of its own.)
-std::vector<double> PredictRanges(const SparseModel& model, const PosedImage& image,
-                                  const View& view, const ViewCoverage& coverage);
-
 // Surface that completion pairs were to cover and could not, after one and after two tries: hidden,
 // too steep, without texture. What failed twice is not tried again, from whatever picture.
 struct GivenUp {
@@ -48,9 +41,10 @@ struct CompletionTarget {
   std::vector<uint8_t> closed;
 };
 
-// The candidate that sees most of the picture's uncovered cells, at their predicted ranges, with a
-// baseline that can measure depth; none when that is less than kMinGain of the picture. Cells tried
-// once are worth no pair of their own, but are tried again along with others.
+// The candidate that measures most of the picture's uncovered cells, at their predicted ranges
+// (ViewQuality; any angle from 2 to 60 degrees counts for something); none when that is less than
+// kMinGain of the picture. Cells tried once are worth no pair of their own, but are tried again
+// along with others.
 CompletionTarget SelectCompletionPartner(const View& view, const CompletionView& seen,
                                          const std::vector<CompletionCandidate>& candidates);
 
