@@ -125,39 +125,57 @@ void DensifyTrack(const SequenceContext& context, const std::function<void(int64
   }
 }
 
-// The picture that completes the pair of `first` best, for what nothing covers of it.
-SecondChoice SelectAmongAll(const SequenceContext& context, const ViewCoverage& coverage,
-                            int first) {
+// A picture before it is decided whether it starts a pair.
+struct SequenceView {
+  // What pairs have covered of it, and what the last one saw of it.
+  ViewCoverage coverage;
+  std::vector<double> predicted_range;  // PredictRanges
+};
+
+SequenceView LookAtNext(const SequenceContext& context, const SequenceMemory& memory,
+                        const std::pair<int, int>& last_pair, int position) {
+  const View view = context.track.ViewOf(position);
+  SequenceView seen;
+  seen.coverage = CoverageOf(context, memory, position);
+  seen.predicted_range =
+      PredictRanges(context.model, context.track.Image(position), view, seen.coverage);
+  if (last_pair.first >= 0) {
+    MarkSeenByBoth(view, seen.predicted_range, context.track.ViewOf(last_pair.first),
+                   context.track.ViewOf(last_pair.second), &seen.coverage);
+  }
+  return seen;
+}
+
+// The picture that completes the pair of `first` best, for what is open in it.
+SecondChoice SelectAmongAll(const SequenceContext& context, const SequenceView& seen, int first) {
   const Track& track = context.track;
-  const View view = track.ViewOf(first);
   std::vector<int> partners = BestPartners(track, context.covisibility, first);
   partners.erase(std::remove_if(partners.begin(), partners.end(),
                                 [&](int partner) { return partner >= track.Length(); }),
                  partners.end());
-  const std::vector<double> ranges =
-      PredictRanges(context.model, track.Image(first), view, coverage);
-  return SelectBestSecond(track, first, RankForOpenSurface(track, view, coverage, ranges, partners),
-                          context.options.min_num_seeds, context.pictures);
+  return SelectBestSecond(
+      track, first,
+      RankForOpenSurface(track, track.ViewOf(first), seen.coverage, seen.predicted_range, partners),
+      context.options.min_num_seeds, context.pictures);
 }
 
 // The same where a completion pass comes back for the rest (ours): whatever picture makes the best
 // pair completes it, and coverage tells which pictures need none.
 void DensifyByCoverage(const SequenceContext& context, const std::function<void(int64_t)>& progress,
                        SequenceMemory* memory, SequenceReport* report) {
-  int within = -1;  // up to there on the track a picture stands between the two of the last pair
+  std::pair<int, int> last_pair(-1, -1);
   for (int first = 0; first < context.track.Length(); ++first) {
-    const ViewCoverage coverage = CoverageOf(context, *memory, first);
-    if (coverage.CoveredShare() > MaxCoveredShare(first <= within, context.options.max_overlap)) {
-      report->pairs.push_back(
-          SkippedRow(context, first, "overlaps too much with the pairs before"));
+    const SequenceView seen = LookAtNext(context, *memory, last_pair, first);
+    const bool is_between = first <= last_pair.second && last_pair.second < context.track.Length();
+    SecondChoice second{-1, "overlaps too much with the pairs before"};
+    if (seen.coverage.CoveredShare() <= MaxCoveredShare(is_between, context.options.max_overlap)) {
+      second = SelectAmongAll(context, seen, first);
+    }
+    if (second.position >= 0) {
+      last_pair = {first, second.position};
+      DensifyNewAreas(context, first, second.position, memory, report);
     } else {
-      const SecondChoice second = SelectAmongAll(context, coverage, first);
-      if (second.position >= 0) {
-        DensifyNewAreas(context, first, second.position, memory, report);
-        within = second.position == context.track.RightOf(first) ? first : second.position;
-      } else {
-        report->pairs.push_back(SkippedRow(context, first, second.why_none));
-      }
+      report->pairs.push_back(SkippedRow(context, first, second.why_none));
     }
     progress(first + 1);
   }

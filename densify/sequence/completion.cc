@@ -28,7 +28,8 @@ OpenCells OpenCellsOf(const View& view, const CompletionView& seen) {
   const Rigid3d world_from_cam = view.cam_from_world.Inverse();
   OpenCells open;
   for (size_t cell = 0; cell < grid.Size(); ++cell) {
-    if (seen.coverage.range[cell] > 0 || seen.predicted_range[cell] <= 0 || seen.tries[cell] >= 2) {
+    if (seen.coverage.range[cell] > 0 || seen.predicted_range[cell] <= 0 ||
+        seen.tries[cell] >= kMaxTries) {
       continue;
     }
     const auto place = PointAt(view, world_from_cam, grid, cell, seen.predicted_range[cell]);
@@ -72,10 +73,11 @@ CompletionView LookAt(const View& view, const CellGrid& cells,
   CompletionView seen;
   seen.coverage = ProjectCoverage(footprints, view.camera, view.cam_from_world, cells);
   seen.tries.assign(cells.Size(), 0);
-  const auto once = ProjectCoverage(given_up.once, view.camera, view.cam_from_world, cells);
-  const auto twice = ProjectCoverage(given_up.twice, view.camera, view.cam_from_world, cells);
-  for (size_t cell = 0; cell < cells.Size(); ++cell) {
-    seen.tries[cell] = twice.range[cell] > 0 ? 2 : once.range[cell] > 0 ? 1 : 0;
+  for (size_t k = 0; k < kMaxTries; ++k) {
+    const auto tried = ProjectCoverage(given_up.after[k], view.camera, view.cam_from_world, cells);
+    for (size_t cell = 0; cell < cells.Size(); ++cell) {
+      if (tried.range[cell] > 0) seen.tries[cell] = static_cast<uint8_t>(k + 1);
+    }
   }
   return seen;
 }
@@ -118,22 +120,19 @@ void NoteFailures(const View& view, const CompletionTarget& target,
                   const std::vector<float>& filled, CompletionView* seen, GivenUp* given_up) {
   const CellGrid& grid = seen->coverage.grid;
   const Rigid3d world_from_cam = view.cam_from_world.Inverse();
-  CloudFootprint once, twice;
+  std::array<CloudFootprint, kMaxTries> after;
   for (size_t cell = 0; cell < grid.Size(); ++cell) {
     if (target.closed[cell] || (!filled.empty() && filled[cell] >= kMinCoveredCell)) continue;
     const double range = seen->predicted_range[cell];
     const auto point = PointAt(view, world_from_cam, grid, cell, range);
     if (!point || !SeesWell(view, *point)) continue;
     const double size = grid.cell * range / view.camera.MeanFocal();
-    CloudFootprint& footprint = seen->tries[cell] == 0 ? once : twice;
-    footprint.patches.push_back({point->cast<float>(), static_cast<float>(size)});
-    ++seen->tries[cell];
+    after[seen->tries[cell]++].patches.push_back({point->cast<float>(), static_cast<float>(size)});
   }
-  for (auto [footprint, all] :
-       {std::pair(&once, &given_up->once), std::pair(&twice, &given_up->twice)}) {
-    if (footprint->patches.empty()) continue;
-    footprint->UpdateSphere();
-    all->emplace_back(*footprint);
+  for (size_t k = 0; k < kMaxTries; ++k) {
+    if (after[k].patches.empty()) continue;
+    after[k].UpdateSphere();
+    given_up->after[k].emplace_back(after[k]);
   }
 }
 

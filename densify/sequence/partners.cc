@@ -1,6 +1,7 @@
 #include "densify/sequence/partners.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "densify/sequence/open_surface.h"
 
@@ -15,8 +16,6 @@ constexpr double kBesideEachOther = 0.2, kSameDirection = 0.985;
 
 constexpr int kStride = 3;              // of every so many columns and rows of cells one is asked
 constexpr double kMinOpenShare = 0.01;  // of the picture, that a pair must measure
-constexpr double kNearlyBest = 0.7;     // of the best one's measure
-constexpr double kMaxWideDeg = 30;      // a wider pair is not preferred: it sees two surfaces
 
 struct Stand {
   Eigen::Vector3d center, axis;
@@ -51,10 +50,11 @@ std::vector<Eigen::Vector3d> OpenPlaces(const View& view, const ViewCoverage& co
   return places;
 }
 
+// A pair by the open places that it measures.
 struct Rated {
   int position;
-  double measure = 0;       // sum of ViewQuality over the places that it sees
-  double parallax_deg = 0;  // their median
+  double quality = 0;  // sum of their ViewQuality
+  double score = 0;    // the same, each times the root of its parallax
 };
 
 Rated Rate(int position, const View& partner, const View& view,
@@ -62,16 +62,12 @@ Rated Rate(int position, const View& partner, const View& view,
   const Eigen::Vector3d center1 = view.cam_from_world.OriginInSource();
   const Eigen::Vector3d center2 = partner.cam_from_world.OriginInSource();
   Rated rated{position};
-  std::vector<double> angles;
   for (const Eigen::Vector3d& place : places) {
     if (!SeesWell(partner, place)) continue;
-    rated.measure += ViewQuality(place, center1, center2);
-    angles.push_back(ParallaxDeg(place, center1, center2));
+    const double quality = ViewQuality(place, center1, center2);
+    rated.quality += quality;
+    rated.score += quality * std::sqrt(ParallaxDeg(place, center1, center2));
   }
-  if (angles.empty()) return rated;
-  const auto middle = angles.begin() + static_cast<long>(angles.size() / 2);
-  std::nth_element(angles.begin(), middle, angles.end());
-  rated.parallax_deg = *middle;
   return rated;
 }
 
@@ -107,27 +103,33 @@ std::vector<int> BestPartners(const Track& track, const Covisibility& covisibili
   return partners;
 }
 
+void MarkSeenByBoth(const View& view, const std::vector<double>& predicted_range,
+                    const View& pair_view1, const View& pair_view2, ViewCoverage* coverage) {
+  const Rigid3d world_from_cam = view.cam_from_world.Inverse();
+  for (size_t cell = 0; cell < coverage->grid.Size(); ++cell) {
+    if (coverage->range[cell] > 0 || predicted_range[cell] <= 0) continue;
+    const auto place = PointAt(view, world_from_cam, coverage->grid, cell, predicted_range[cell]);
+    if (place && SeesWell(pair_view1, *place) && SeesWell(pair_view2, *place)) {
+      coverage->range[cell] = static_cast<float>(predicted_range[cell]);
+    }
+  }
+}
+
 std::vector<int> RankForOpenSurface(const Track& track, const View& view,
                                     const ViewCoverage& coverage,
                                     const std::vector<double>& predicted_range,
                                     const std::vector<int>& partners) {
   const std::vector<Eigen::Vector3d> places = OpenPlaces(view, coverage, predicted_range);
-  const double min_measure =
+  const double min_quality =
       kMinOpenShare * static_cast<double>(coverage.grid.Size()) / (kStride * kStride);
   std::vector<Rated> ranked;
   for (const int partner : partners) {
     const Rated rated = Rate(partner, track.ViewOf(partner), view, places);
-    if (rated.measure >= min_measure) ranked.push_back(rated);
+    if (rated.quality >= min_quality) ranked.push_back(rated);
   }
   std::sort(ranked.begin(), ranked.end(), [](const Rated& a, const Rated& b) {
-    return a.measure != b.measure ? a.measure > b.measure : a.position < b.position;
+    return a.score != b.score ? a.score > b.score : a.position < b.position;
   });
-  const auto wide = std::stable_partition(ranked.begin(), ranked.end(), [&](const Rated& rated) {
-    return rated.parallax_deg <= kMaxWideDeg &&
-           rated.measure >= kNearlyBest * ranked.front().measure;
-  });
-  std::stable_sort(ranked.begin(), wide,
-                   [](const Rated& a, const Rated& b) { return a.parallax_deg > b.parallax_deg; });
   std::vector<int> positions;
   for (const Rated& rated : ranked) positions.push_back(rated.position);
   return positions;

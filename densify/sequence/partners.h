@@ -15,10 +15,16 @@ namespace colmap_seapoint {
 // and look the same way (video, a carrier that hovers) the best one stands for all.
 std::vector<int> BestPartners(const Track& track, const Covisibility& covisibility, int position);
 
-// Those of `partners` that see enough of the surface in `view` that nothing covers yet, at its
-// predicted ranges (PredictRanges), in the order in which they are to be tried: the widest baseline
-// first of those that measure nearly as much of it as the best one does, then the others, best
-// first. Wide baselines measure range best, and what they miss is left to the completion pass.
+// Counts as covered, at their predicted ranges, the cells of `view` that both pictures of a pair
+// see well: what the pair could not measure there is left to the completion pass, which tries
+// others.
+void MarkSeenByBoth(const View& view, const std::vector<double>& predicted_range,
+                    const View& pair_view1, const View& pair_view2, ViewCoverage* coverage);
+
+// Those of `partners` that measure a hundredth of the picture that nothing covers yet, at its
+// predicted ranges (PredictRanges), best first. A place counts by its ViewQuality times the root of
+// its parallax: a range is measured as well as its parallax is large, but the wider pair sees less,
+// and fails more often; what it misses is left to the completion pass.
 std::vector<int> RankForOpenSurface(const Track& track, const View& view,
                                     const ViewCoverage& coverage,
                                     const std::vector<double>& predicted_range,
