@@ -83,8 +83,9 @@ void Remember(const SequenceContext& context, const PairTask& task, std::vector<
   memory->previous.filled = std::move(filled);
 }
 
-// Overlap, labels, seeds, propagation, reprojection (paper 2.5 to 2.7).
-void DensifyNewAreas(const SequenceContext& context, int first, int second, SequenceMemory* memory,
+// Overlap, labels, seeds, propagation, reprojection (paper 2.5 to 2.7). Whether the pair gave
+// something.
+bool DensifyNewAreas(const SequenceContext& context, int first, int second, SequenceMemory* memory,
                      SequenceReport* report) {
   // Decoded while this pair is densified: most often they are the next pair.
   for (const int ahead : {second + 1, second + 2}) {
@@ -96,6 +97,7 @@ void DensifyNewAreas(const SequenceContext& context, int first, int second, Sequ
   PairOutcome pair = RunPair(context, task);
   Deliver(context, task, pair, memory, report);
   Remember(context, task, std::move(pair.result.filled), memory);
+  return pair.result.failure.empty();
 }
 
 // Figure 3: pair by pair along the track.
@@ -172,8 +174,9 @@ void DensifyByCoverage(const SequenceContext& context, const std::function<void(
       second = SelectAmongAll(context, seen, first);
     }
     if (second.position >= 0) {
-      last_pair = {first, second.position};
-      DensifyNewAreas(context, first, second.position, memory, report);
+      if (DensifyNewAreas(context, first, second.position, memory, report)) {
+        last_pair = {first, second.position};
+      }
     } else {
       report->pairs.push_back(SkippedRow(context, first, second.why_none));
     }
