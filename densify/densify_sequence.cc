@@ -1,19 +1,26 @@
 #include "densify/densify_sequence.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "densify/overlap/coverage.h"
 #include "densify/run_pair.h"
 #include "densify/sequence/completion.h"
 #include "densify/sequence/covisibility.h"
+#include "densify/sequence/open_surface.h"
 #include "densify/sequence/pair_selection.h"
+#include "densify/sequence/partners.h"
+#include "densify/sequence/picture_order.h"
+#include "densify/sequence/triangulate_matches.h"
 
 namespace colmap_seapoint {
 
 namespace {
 
-constexpr int kMaxPartners = 3;  // of a picture, in the completion pass
+// Of a picture in the completion pass: partners that it may have, and that it gets.
+constexpr size_t kMaxCandidates = 12;
+constexpr int kMaxPartners = 3;
 
 // What is covered is known only where all earlier views count.
 bool Completes(const SequenceContext& context) {
@@ -28,6 +35,14 @@ InfluenceMask MaskOn(const SequenceContext& context, const SequenceMemory& memor
                            context.InfluenceRadius(candidate));
 }
 
+// What all pairs so far have covered of a picture (ours).
+ViewCoverage CoverageOf(const SequenceContext& context, const SequenceMemory& memory,
+                        int position) {
+  const View view = context.track.ViewOf(position);
+  return ProjectCoverage(memory.footprints, view.camera, view.cam_from_world,
+                         context.Cells(position));
+}
+
 // Mask and labels against the pair before (paper 2.5, 2.7), or against all that is known (ours).
 PairOverlap AssessOverlap(const SequenceContext& context, const SequenceMemory& memory, int first) {
   const auto seapoints = context.SeaPoints(first);
@@ -39,10 +54,7 @@ PairOverlap AssessOverlap(const SequenceContext& context, const SequenceMemory& 
                                   context.InfluenceRadius(first));
   }
   if (context.redundancy == Redundancy::kSequential) return overlap;
-  const View view = context.track.ViewOf(first);
-  return OverlapWithAll(std::move(overlap),
-                        ProjectCoverage(memory.footprints, view.camera, view.cam_from_world, cells),
-                        seapoints->points);
+  return OverlapWithAll(std::move(overlap), CoverageOf(context, memory, first), seapoints->points);
 }
 
 // Paper 2.6: SeaPoints in the overlap area form no seeds. Against surface that is known (ours) the
@@ -71,25 +83,28 @@ void Remember(const SequenceContext& context, const PairTask& task, std::vector<
   memory->previous.filled = std::move(filled);
 }
 
-// Overlap, labels, seeds, propagation, reprojection (paper 2.5 to 2.7).
-void DensifyNewAreas(const SequenceContext& context, int first, int second, SequenceMemory* memory,
+// Overlap, labels, seeds, propagation, reprojection (paper 2.5 to 2.7). Whether the pair gave
+// something.
+bool DensifyNewAreas(const SequenceContext& context, int first, int second, SequenceMemory* memory,
                      SequenceReport* report) {
   // Decoded while this pair is densified: most often they are the next pair.
   for (const int ahead : {second + 1, second + 2}) {
-    if (ahead < context.track.Length()) context.pictures->Prefetch(context.track.ImageIdx(ahead));
+    if (second > first && ahead < context.track.Length())
+      context.pictures->Prefetch(context.track.ImageIdx(ahead));
   }
   PairTask task{first, second, "sequence", AssessOverlap(context, *memory, first), {}};
   task.seeds = FormSeeds(context, first, second, LabelsThatCount(context, task.overlap));
   PairOutcome pair = RunPair(context, task);
   Deliver(context, task, pair, memory, report);
   Remember(context, task, std::move(pair.result.filled), memory);
+  return pair.result.failure.empty();
 }
 
 // Figure 3: pair by pair along the track.
 void DensifyTrack(const SequenceContext& context, const std::function<void(int64_t)>& progress,
                   SequenceMemory* memory, SequenceReport* report) {
   const PartialDensificationOptions& options = context.options;
-  const SecondRules rules{options.min_num_seeds, options.min_mean_motion, Completes(context)};
+  const SecondRules rules{options.min_num_seeds, options.min_mean_motion};
   int first = 0;
   while (context.track.CanStartPair(first)) {
     const SecondChoice second =
@@ -112,11 +127,69 @@ void DensifyTrack(const SequenceContext& context, const std::function<void(int64
   }
 }
 
+// A picture before it is decided whether it starts a pair.
+struct SequenceView {
+  // What pairs have covered of it, and what the last one saw of it.
+  ViewCoverage coverage;
+  std::vector<double> predicted_range;  // PredictRanges
+};
+
+SequenceView LookAtNext(const SequenceContext& context, const SequenceMemory& memory,
+                        const std::pair<int, int>& last_pair, int position) {
+  const View view = context.track.ViewOf(position);
+  SequenceView seen;
+  seen.coverage = CoverageOf(context, memory, position);
+  seen.predicted_range =
+      PredictRanges(context.model, context.track.Image(position), view, seen.coverage);
+  if (last_pair.first >= 0) {
+    MarkSeenByBoth(view, seen.predicted_range, context.track.ViewOf(last_pair.first),
+                   context.track.ViewOf(last_pair.second), &seen.coverage);
+  }
+  return seen;
+}
+
+// The picture that completes the pair of `first` best, for what is open in it.
+SecondChoice SelectAmongAll(const SequenceContext& context, const SequenceView& seen, int first) {
+  const Track& track = context.track;
+  std::vector<int> partners = BestPartners(track, context.covisibility, first);
+  partners.erase(std::remove_if(partners.begin(), partners.end(),
+                                [&](int partner) { return partner >= track.Length(); }),
+                 partners.end());
+  return SelectBestSecond(
+      track, first,
+      RankForOpenSurface(track, track.ViewOf(first), seen.coverage, seen.predicted_range, partners),
+      context.options.min_num_seeds, context.pictures);
+}
+
+// The same where a completion pass comes back for the rest (ours): whatever picture makes the best
+// pair completes it, and coverage tells which pictures need none.
+void DensifyByCoverage(const SequenceContext& context, const std::function<void(int64_t)>& progress,
+                       SequenceMemory* memory, SequenceReport* report) {
+  std::pair<int, int> last_pair(-1, -1);
+  for (int first = 0; first < context.track.Length(); ++first) {
+    const SequenceView seen = LookAtNext(context, *memory, last_pair, first);
+    const bool is_between = first <= last_pair.second && last_pair.second < context.track.Length();
+    SecondChoice second{-1, "overlaps too much with the pairs before"};
+    if (seen.coverage.CoveredShare() <= MaxCoveredShare(is_between, context.options.max_overlap)) {
+      second = SelectAmongAll(context, seen, first);
+    }
+    if (second.position >= 0) {
+      if (DensifyNewAreas(context, first, second.position, memory, report)) {
+        last_pair = {first, second.position};
+      }
+    } else {
+      report->pairs.push_back(SkippedRow(context, first, second.why_none));
+    }
+    progress(first + 1);
+  }
+}
+
 std::vector<CompletionCandidate> CandidatesOf(const SequenceContext& context, int position,
-                                              const std::vector<int>& covisible,
                                               const SequenceMemory& memory) {
+  std::vector<int> partners = BestPartners(context.track, context.covisibility, position);
+  partners.resize(std::min(partners.size(), kMaxCandidates));
   std::vector<CompletionCandidate> candidates;
-  for (const int partner : covisible) {
+  for (const int partner : partners) {
     if (memory.tried_pairs.count(std::minmax(position, partner)) > 0) continue;
     candidates.push_back({partner, context.track.ViewOf(partner)});
   }
@@ -142,11 +215,10 @@ PairTask TaskOf(const SequenceContext& context, int position, const CompletionTa
   return task;
 }
 
-void CompletePicture(const SequenceContext& context, int position,
-                     const std::vector<int>& covisible, GivenUp* given_up, SequenceMemory* memory,
-                     SequenceReport* report) {
+void CompletePicture(const SequenceContext& context, int position, GivenUp* given_up,
+                     SequenceMemory* memory, SequenceReport* report) {
   const View view = context.track.ViewOf(position);
-  std::vector<CompletionCandidate> candidates = CandidatesOf(context, position, covisible, *memory);
+  std::vector<CompletionCandidate> candidates = CandidatesOf(context, position, *memory);
   CompletionView seen = LookAt(view, context.Cells(position), memory->footprints, *given_up);
   for (int tries = 0; tries < kMaxPartners && !candidates.empty(); ++tries) {
     seen.predicted_range =
@@ -168,37 +240,44 @@ void CompletePicture(const SequenceContext& context, int position,
 // see, of whatever strip, and no pair has covered.
 void CompleteSequence(const SequenceContext& context, const std::function<void(int64_t)>& progress,
                       SequenceMemory* memory, SequenceReport* report) {
-  const std::vector<std::vector<int>> covisible =
-      CovisiblePictures(context.model, context.track.Order());
   GivenUp given_up;
   for (int position = 0; position < context.track.NumPictures(); ++position) {
-    CompletePicture(context, position, covisible[static_cast<size_t>(position)], &given_up, memory,
-                    report);
+    CompletePicture(context, position, &given_up, memory, report);
     progress(position + 1);
   }
 }
 
 }  // namespace
 
-SequenceReport DensifySequence(const SparseModel& model, PictureSource* source,
+SequenceReport DensifySequence(const SparseModel& given_model, PictureSource* source,
                                const PartialDensificationOptions& options, int num_threads,
                                const SequenceCallbacks& callbacks, const StereoRig& rig) {
-  const Track track(model, rig);
   PictureCache pictures(source);
-  const SequenceContext context{
-      model,       track,     options,  options.Mode(), options.AgainstWhat(),
-      num_threads, callbacks, &pictures};
+  SequenceReport report;
+  std::optional<SparseModel> with_points;
+  if (!HasSharedPoints(given_model)) {
+    with_points = WithTriangulatedMatches(given_model, &pictures);
+    report.num_triangulated =
+        static_cast<int64_t>(with_points->points3D.size() - given_model.points3D.size());
+  }
+  const SparseModel& model = with_points ? *with_points : given_model;
+  const Covisibility covisibility = MeasureCovisibility(model);
+  const Track track(model, OrderPictures(model, covisibility), rig);
+  const SequenceContext context{model,       covisibility,   track,
+                                options,     options.Mode(), options.AgainstWhat(),
+                                num_threads, callbacks,      &pictures};
   const int64_t num_pictures = track.NumPictures();
   const int64_t total = num_pictures * (Completes(context) ? 2 : 1);
   const auto progress = [&](int64_t done) {
     if (callbacks.progress) callbacks.progress(done, total);
   };
   SequenceMemory memory;
-  SequenceReport report;
-  DensifyTrack(context, progress, &memory, &report);
   if (Completes(context)) {
+    DensifyByCoverage(context, progress, &memory, &report);
     CompleteSequence(
         context, [&](int64_t done) { progress(num_pictures + done); }, &memory, &report);
+  } else {
+    DensifyTrack(context, progress, &memory, &report);
   }
   report.left_out = pictures.LeftOut();
   return report;

@@ -10,6 +10,7 @@
 #include "densify/overlap/influence_mask.h"
 #include "densify/overlap/packed_footprint.h"
 #include "densify/partial_densification_options.h"
+#include "densify/sequence/covisibility.h"
 #include "densify/sequence/picture_cache.h"
 #include "densify/sequence/track.h"
 #include "densify/sequence_report.h"
@@ -18,7 +19,8 @@ namespace colmap_seapoint {
 
 // The same for all pairs. `pictures` is lent memory: it never changes a result.
 struct SequenceContext {
-  const SparseModel& model;
+  const SparseModel& model;  // with points
+  const Covisibility& covisibility;
   const Track& track;
   const PartialDensificationOptions& options;
   DensificationMode mode;  // options.mode and options.redundancy

@@ -30,6 +30,7 @@ struct SequenceReport {
   std::vector<PairReport> pairs;
   std::vector<LeftOutPicture> left_out;  // pictures that could not be read
   int64_t num_points = 0;
+  int64_t num_triangulated = 0;  // points made of matches, where the model has none that two see
 };
 
 struct PairDebug;

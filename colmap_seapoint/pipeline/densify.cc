@@ -141,6 +141,11 @@ SequenceReport Densify(const PartialDensifierOptions& options, const SparseModel
       DensifySequence(model, pictures, options.densification,
                       EffectiveNumThreads(options.run.num_threads), callbacks, rig);
   if (progress) progress->Finish();
+  if (sequence.num_triangulated > 0) {
+    LogInfo("no point of the model is seen by two pictures: " +
+            std::to_string(sequence.num_triangulated) +
+            " were triangulated from matches, for densification only");
+  }
   return sequence;
 }
 

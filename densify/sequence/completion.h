@@ -3,6 +3,7 @@
 // only (V, V + 2) or neighbouring strips see twice.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "colmap_seapoint/base/sparse_model.h"
@@ -17,24 +18,20 @@ struct CompletionCandidate {
   View view;
 };
 
-// Range of the surface in every cell of the picture: what is reconstructed there, and elsewhere
-// that of the nearest cell that is reconstructed or holds a triangulated point. All 0 when there is
-// neither. (The mapper drops points that only two pictures see, so the rim, which matters most
-// here, has none of its own.)
-std::vector<double> PredictRanges(const SparseModel& model, const PosedImage& image,
-                                  const View& view, const ViewCoverage& coverage);
+// How often the completion pass tries a surface, from whatever pictures.
+inline constexpr size_t kMaxTries = 4;
 
-// Surface that completion pairs were to cover and could not, after one and after two tries: hidden,
-// too steep, without texture. What failed twice is not tried again, from whatever picture.
+// Surface that completion pairs were to cover and could not: hidden, too steep, without texture.
 struct GivenUp {
-  std::vector<PackedFootprint> once, twice;
+  // after[k]: after k + 1 tries.
+  std::array<std::vector<PackedFootprint>, kMaxTries> after;
 };
 
 // A picture as the completion pass sees it, cell by cell.
 struct CompletionView {
   ViewCoverage coverage;
   std::vector<double> predicted_range;  // PredictRanges
-  std::vector<uint8_t> tries;           // how often its surface was tried in vain, 0 .. 2
+  std::vector<uint8_t> tries;           // how often its surface was tried in vain, 0 .. kMaxTries
 };
 
 // All of it but the predicted ranges.
@@ -48,9 +45,10 @@ struct CompletionTarget {
   std::vector<uint8_t> closed;
 };
 
-// The candidate that sees most of the picture's uncovered cells, at their predicted ranges, with a
-// baseline that can measure depth; none when that is less than kMinGain of the picture. Cells tried
-// once are worth no pair of their own, but are tried again along with others.
+// The candidate that measures most of the picture's uncovered cells, at their predicted ranges
+// (ViewQuality; any angle from 2 to 60 degrees counts for something); none when that is less than
+// kMinGain of the picture. Cells that were tried are worth no pair of their own, but are tried
+// again along with others, kMaxTries times in all.
 CompletionTarget SelectCompletionPartner(const View& view, const CompletionView& seen,
                                          const std::vector<CompletionCandidate>& candidates);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "densify/sequence/covisibility.h"
 
@@ -11,55 +12,72 @@ namespace {
 
 constexpr double kMinOverlap = 0.1;  // between `first` and the second picture of the next pair
 constexpr int kMaxSecondTries = 4;   // pictures tried as the second one of a pair
+constexpr int kMaxWalk = 150;        // pictures from the same place that are passed on the way
 constexpr double kMinParallaxDeg = 1;
-constexpr double kMaxParallaxDeg = 30;   // a wider pair is not preferred: it sees two surfaces
-constexpr double kMinSharedShare = 0.6;  // of the first picture, in the preferred second one
 
-struct SecondCandidate {
-  int position;
-  double parallax_deg;  // median, of the points shared with the first picture
-};
+// What needs no search: nothing without the first picture, and its simultaneous right one.
+std::optional<SecondChoice> ChoiceWithoutSearch(const Track& track, int first,
+                                                PictureCache* pictures) {
+  const int right = track.RightOf(first);
+  if (right >= 0) pictures->Prefetch(track.ImageIdx(right));
+  if (!pictures->Get(track.ImageIdx(first))) return {{-1, "the picture cannot be read"}};
+  if (right >= 0 && pictures->Get(track.ImageIdx(right))) return {{right, ""}};
+  return std::nullopt;
+}
 
-// In the order in which they are tried.
-std::vector<SecondCandidate> SecondCandidates(const SparseModel& model, const Track& track,
-                                              int first, bool prefer_wide) {
-  std::vector<SecondCandidate> candidates;
-  const int end = std::min(track.Length(), first + 1 + kMaxSecondTries);
-  for (int second = first + 1; second < end; ++second) {
-    candidates.push_back(
-        {second, MedianParallaxDeg(model, track.Image(first), track.Image(second))});
+enum class SecondFitness { kFits, kSamePlace, kNoMatch };
+
+SecondFitness FitnessOf(const SparseModel& model, const Track& track, int first, int second,
+                        const SecondRules& rules, PictureCache* pictures) {
+  const int first_idx = track.ImageIdx(first), second_idx = track.ImageIdx(second);
+  const auto parallax = MedianParallaxDeg(model, track.Image(first), track.Image(second));
+  if (parallax && *parallax < kMinParallaxDeg) return SecondFitness::kSamePlace;
+  if (!pictures->Get(second_idx)) return SecondFitness::kNoMatch;
+  const auto matches = pictures->GetMatches(first_idx, second_idx);
+  if (!parallax || static_cast<int>(matches->size()) < rules.min_num_seeds) {
+    return SecondFitness::kNoMatch;
   }
-  if (!prefer_wide) return candidates;
-  const auto wide = std::stable_partition(
-      candidates.begin(), candidates.end(), [&](const SecondCandidate& candidate) {
-        return candidate.parallax_deg <= kMaxParallaxDeg &&
-               SharedShare(model, track.Image(first), track.ViewOf(candidate.position)) >=
-                   kMinSharedShare;
-      });
-  std::stable_sort(candidates.begin(), wide,
-                   [](const auto& a, const auto& b) { return a.parallax_deg > b.parallax_deg; });
-  return candidates;
+  const double motion =
+      MeanMotion(pictures->GetSeaPoints(first_idx)->points,
+                 pictures->GetSeaPoints(second_idx)->points, *matches, track.LongerSide(first));
+  return motion >= rules.min_mean_motion ? SecondFitness::kFits : SecondFitness::kSamePlace;
 }
 
 }  // namespace
 
 SecondChoice SelectSecond(const SparseModel& model, const Track& track, int first,
                           const SecondRules& rules, PictureCache* pictures) {
-  const int first_idx = track.ImageIdx(first), right = track.RightOf(first);
-  if (right >= 0) pictures->Prefetch(track.ImageIdx(right));
-  if (!pictures->Get(first_idx)) return {-1, "the picture cannot be read"};
-  if (right >= 0 && pictures->Get(track.ImageIdx(right))) return {right, ""};
+  if (const auto choice = ChoiceWithoutSearch(track, first, pictures)) return *choice;
   std::string why_none = "no following picture matches it";
-  for (const auto& [second, parallax] : SecondCandidates(model, track, first, rules.prefer_wide)) {
-    const int second_idx = track.ImageIdx(second);
-    if (!pictures->Get(second_idx)) continue;
-    const auto matches = pictures->GetMatches(first_idx, second_idx);
-    if (static_cast<int>(matches->size()) < rules.min_num_seeds) continue;
-    const double motion =
-        MeanMotion(pictures->GetSeaPoints(first_idx)->points,
-                   pictures->GetSeaPoints(second_idx)->points, *matches, track.LongerSide(first));
-    if (motion >= rules.min_mean_motion && parallax >= kMinParallaxDeg) return {second, ""};
-    why_none = "the viewpoint hardly changes in the pictures that follow";
+  int num_tries = 0;
+  const int end = std::min(track.Length(), first + 1 + kMaxSecondTries + kMaxWalk);
+  for (int second = first + 1; second < end && num_tries < kMaxSecondTries; ++second) {
+    switch (FitnessOf(model, track, first, second, rules, pictures)) {
+      case SecondFitness::kFits:
+        return {second, ""};
+      case SecondFitness::kSamePlace:
+        why_none = "the viewpoint hardly changes in the pictures that follow";
+        break;
+      case SecondFitness::kNoMatch:
+        ++num_tries;
+    }
+  }
+  return {-1, why_none};
+}
+
+SecondChoice SelectBestSecond(const Track& track, int first, const std::vector<int>& ranked,
+                              int min_num_seeds, PictureCache* pictures) {
+  if (const auto choice = ChoiceWithoutSearch(track, first, pictures)) return *choice;
+  std::string why_none = "no other picture sees what is new in it at an angle that measures depth";
+  for (const int second : ranked) {
+    if (!pictures->Get(track.ImageIdx(second))) continue;
+    int num_seeds = NumSharedPoints(track.Image(first), track.Image(second));
+    if (num_seeds < min_num_seeds) {
+      num_seeds += static_cast<int>(
+          pictures->GetMatches(track.ImageIdx(first), track.ImageIdx(second))->size());
+    }
+    if (num_seeds >= min_num_seeds) return {second, ""};
+    why_none = "too few matches with the pictures that see what is new in it";
   }
   return {-1, why_none};
 }
@@ -81,6 +99,10 @@ NextChoice SelectNext(const Track& track, int first, int second, double max_over
     next.passed_over.push_back(skipped);
   }
   return next;
+}
+
+double MaxCoveredShare(bool between_last_pair, double max_overlap) {
+  return between_last_pair ? 0.5 * max_overlap : max_overlap;
 }
 
 double MeanMotion(const std::vector<SeaPoint>& points1, const std::vector<SeaPoint>& points2,

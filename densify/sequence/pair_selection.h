@@ -15,11 +15,8 @@ namespace colmap_seapoint {
 // Positions below are those of the track.
 
 struct SecondRules {
-  int min_num_seeds;       // matches that a pair needs
+  int min_num_seeds;       // that a pair needs
   double min_mean_motion;  // share of the picture's longer side (paper 2.6)
-  // Ours: of the pictures that see most of what `first` does, the one with the widest baseline goes
-  // first. That is worth it where a completion pass comes back for what it does not see.
-  bool prefer_wide;
 };
 
 struct SecondChoice {
@@ -28,11 +25,18 @@ struct SecondChoice {
 };
 
 // The picture that completes the pair of `first`: its simultaneous right one where there is one
-// that can be read (paper 4); else, of the next four on the track, the first one with enough
-// matches, enough motion (paper 2.6) and a parallax of a degree (ours: motion can be mere
-// rotation).
+// that can be read (paper 4); else the first one that follows on the track with enough matches,
+// enough motion (paper 2.6) and a parallax of a degree (ours: motion can be mere rotation). After
+// four that match too little the search ends; those that see the same from the same place do not
+// count (video, a carrier that hovers), up to 150.
 SecondChoice SelectSecond(const SparseModel& model, const Track& track, int first,
                           const SecondRules& rules, PictureCache* pictures);
+
+// Ours, where a completion pass comes back for what the pair does not see: the simultaneous right
+// picture likewise; else the first of `ranked` (RankForOpenSurface), wherever on the track, that
+// can be read and has enough seeds: matches and triangulated points that both pictures see.
+SecondChoice SelectBestSecond(const Track& track, int first, const std::vector<int>& ranked,
+                              int min_num_seeds, PictureCache* pictures);
 
 struct NextChoice {
   int position = 0;  // where the next pair starts; Track::CanStartPair tells whether it can
@@ -43,6 +47,11 @@ struct NextChoice {
 // SelectNextStereoFirst.
 NextChoice SelectNext(const Track& track, int first, int second, double max_overlap,
                       const std::function<double(int)>& overlap);
+
+// Ours, where all earlier pairs count: the share of a picture that they may cover for it to start a
+// pair of its own. Between the two pictures of the last pair half of it is enough: what is open
+// there, the next pair, which starts beyond them, sees as well.
+double MaxCoveredShare(bool between_last_pair, double max_overlap);
 
 // Whether a pair's matches tell two viewpoints apart (paper 2.6): the mean norm of the vectors, in
 // shares of the picture's longer side.

@@ -39,7 +39,7 @@ class PictureCache {
   // Five are in use around a pair; more serve the completion pass, which comes back to them.
   static constexpr size_t kMinPictures = 5;
   static constexpr size_t kMaxBytes = 192'000'000;  // beyond those
-  static constexpr size_t kMaxFeatures = 32;
+  static constexpr size_t kMaxFeatures = 64;
   static constexpr size_t kMaxMatches = 32;
 
   struct Entry {

@@ -10,17 +10,19 @@
 
 namespace colmap_seapoint {
 
-// Positions count along the track, in the natural order of the pictures' names ("2" before "10");
-// those of a rig's right pictures come behind it, in the same order.
+// Positions count along the track, in the order of OrderPictures; those of a rig's right pictures
+// come behind it, in the same order.
 class Track {
  public:
-  // `model` outlives it. Throws std::out_of_range later when an image's camera is missing.
-  Track(const SparseModel& model, const StereoRig& rig);
+  // `model` outlives it; `order` holds every image_idx once. Throws std::out_of_range later when an
+  // image's camera is missing.
+  Track(const SparseModel& model, std::vector<int> order, const StereoRig& rig);
 
   int NumPictures() const { return static_cast<int>(order_.size()); }
   int Length() const { return length_; }  // pictures on the track, without right ones
   const std::vector<int>& Order() const { return order_; }  // position -> image_idx
   int ImageIdx(int position) const { return order_[static_cast<size_t>(position)]; }
+  int PositionOf(int image_idx) const { return position_of_[static_cast<size_t>(image_idx)]; }
   const PosedImage& Image(int position) const;
   const Camera& CameraOf(int position) const {
     return model_.cameras.at(Image(position).camera_id);
@@ -34,7 +36,7 @@ class Track {
 
  private:
   const SparseModel& model_;
-  std::vector<int> order_;
+  std::vector<int> order_, position_of_;
   int length_ = 0;
   std::vector<int> right_of_;
 };

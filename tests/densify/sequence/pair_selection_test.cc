@@ -4,9 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
+
+#include "colmap_seapoint/base/error.h"
+#include "tests/densify/sequence/survey_model.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -126,10 +131,16 @@ SparseModel ModelOf(int length, int num_right, StereoRig* rig) {
   return model;
 }
 
+std::vector<int> InOrder(const SparseModel& model) {
+  std::vector<int> order(model.images.size());
+  std::iota(order.begin(), order.end(), 0);
+  return order;
+}
+
 TEST(SelectNextTest, SaysWhichPicturesItPassesOver) {
   StereoRig no_rig;
   const SparseModel model = ModelOf(9, 0, &no_rig);
-  const Track track(model, no_rig);
+  const Track track(model, InOrder(model), no_rig);
   const NextChoice next = SelectNext(track, 0, 1, 0.59, Advancing(0, 80));
   EXPECT_EQ(next.position, 3);
   EXPECT_EQ(next.passed_over, (std::vector<int>{2}));
@@ -141,7 +152,7 @@ TEST(SelectNextTest, SaysWhichPicturesItPassesOver) {
 TEST(SelectNextTest, SimultaneousPairsGoOnBehindTheirFirstPicture) {
   StereoRig rig;
   const SparseModel model = ModelOf(6, 6, &rig);
-  const Track track(model, rig);
+  const Track track(model, InOrder(model), rig);
   const NextChoice next = SelectNext(track, 0, track.RightOf(0), 0.5, Advancing(0, 80));
   EXPECT_EQ(next.position, 3);
   EXPECT_EQ(next.passed_over, (std::vector<int>{1, 2}));
@@ -150,7 +161,7 @@ TEST(SelectNextTest, SimultaneousPairsGoOnBehindTheirFirstPicture) {
 TEST(SelectNextTest, TheLastPictureAddsItsSimultaneousPair) {
   StereoRig rig;
   const SparseModel model = ModelOf(6, 1, &rig);
-  const Track track(model, rig);
+  const Track track(model, InOrder(model), rig);
   const auto unasked = [](int) {
     ADD_FAILURE();
     return 0.0;
@@ -172,6 +183,132 @@ TEST(MeanMotionTest, MeanNormInSharesOfTheLongerSide) {
   EXPECT_NEAR(MeanMotion(points1, points2, matches, 1000), (5 + 10) / 2.0 / 1000, 1e-9);
   EXPECT_EQ(MeanMotion(points1, points2, {}, 1000), 0);
   EXPECT_EQ(MeanMotion(points1, points1, {{0, 0}, {1, 1}}, 1000), 0);
+}
+
+// Pictures that match as many times as they share points, by the projections of those.
+class PlannedSource : public PictureSource {
+ public:
+  explicit PlannedSource(const SparseModel& model) : model_(model) {}
+
+  Picture ReadPicture(int image_idx) override {
+    if (image_idx == unreadable) throw Error("a.jpg", "is cut short", "copy it again");
+    return {};
+  }
+  std::optional<Features> ReadSeaPoints(int image_idx) override {
+    const PosedImage& image = At(image_idx);
+    Features features;
+    for (const uint64_t id : image.point3D_ids) {
+      const auto pixel =
+          SurveyModel::TestCamera().ImgFromCam(image.cam_from_world * model_.points3D.at(id).xyz);
+      SeaPoint point;
+      point.x = static_cast<float>(pixel->x());
+      point.y = static_cast<float>(pixel->y());
+      features.points.push_back(point);
+    }
+    return features;
+  }
+  Features FindSeaPoints(const GrayImage&) override { return {}; }
+  std::optional<FeatureMatches> ReadMatches(int image_idx1, int image_idx2) override {
+    ++num_asked;
+    FeatureMatches matches;
+    if (!has_matches) return matches;
+    const auto &ids1 = At(image_idx1).point3D_ids, &ids2 = At(image_idx2).point3D_ids;
+    for (uint32_t a = 0; a < ids1.size(); ++a) {
+      const auto found = std::find(ids2.begin(), ids2.end(), ids1[a]);
+      if (found != ids2.end()) matches.push_back({a, static_cast<uint32_t>(found - ids2.begin())});
+    }
+    return matches;
+  }
+  FeatureMatches Match(const Features&, const Features&) override { return {}; }
+
+  int unreadable = -1;
+  bool has_matches = true;
+  int num_asked = 0;
+
+ private:
+  const PosedImage& At(int image_idx) const {
+    return model_.images[static_cast<size_t>(image_idx)];
+  }
+
+  const SparseModel& model_;
+};
+
+constexpr SecondRules kRules = {20, 0.02};
+
+SparseModel AlongX(const std::vector<double>& x) {
+  SurveyModel survey;
+  for (size_t k = 0; k < x.size(); ++k) survey.AddAbove(std::to_string(k), x[k]);
+  return survey.WithGround();
+}
+
+SecondChoice NextSecond(const SparseModel& model, int first, PlannedSource* source) {
+  PictureCache pictures(source);
+  return SelectSecond(model, Track(model, InOrder(model), {}), first, kRules, &pictures);
+}
+
+TEST(SelectSecondTest, TheNextOneOfAStrip) {
+  const SparseModel model = AlongX({0, 0.4, 0.8, 1.2});
+  PlannedSource source(model);
+  EXPECT_EQ(NextSecond(model, 0, &source).position, 1);
+  EXPECT_EQ(NextSecond(model, 2, &source).position, 3);
+  source.unreadable = 1;
+  EXPECT_EQ(NextSecond(model, 0, &source).position, 2);
+  source.unreadable = 0;
+  EXPECT_EQ(NextSecond(model, 0, &source).why_none, "the picture cannot be read");
+}
+
+// 30 pictures a second: the first one that is a degree of parallax away, without matching all
+// those on the way.
+TEST(SelectSecondTest, WalksOnAlongAVideo) {
+  std::vector<double> x;
+  for (int k = 0; k < 60; ++k) x.push_back(0.005 * k);
+  const SparseModel model = AlongX(x);
+  PlannedSource source(model);
+  const int second = NextSecond(model, 0, &source).position;
+  EXPECT_GE(second, 7);  // 0.035: a degree at a depth of 2
+  EXPECT_LE(second, 10);
+  EXPECT_LE(source.num_asked, 4);
+}
+
+TEST(SelectSecondTest, ACarrierThatHovers) {
+  std::vector<double> x(40, 0.0);
+  for (size_t k = 0; k < x.size(); ++k) x[k] = 1e-4 * static_cast<double>(k % 3);
+  x.push_back(0.4);
+  const SparseModel model = AlongX(x);
+  PlannedSource source(model);
+  EXPECT_EQ(NextSecond(model, 0, &source).position, 40);
+  x.pop_back();
+  const SparseModel never = AlongX(x);
+  PlannedSource of_never(never);
+  EXPECT_EQ(NextSecond(never, 0, &of_never).why_none,
+            "the viewpoint hardly changes in the pictures that follow");
+}
+
+TEST(SelectSecondTest, EndsAfterFourThatDoNotMatch) {
+  const SparseModel model = AlongX({0, 5, 5.1, 5.2, 5.3, 0.3});
+  PlannedSource source(model);
+  EXPECT_EQ(NextSecond(model, 0, &source).why_none, "no following picture matches it");
+}
+
+TEST(SelectBestSecondTest, TheFirstThatCanBeReadAndHasSeeds) {
+  const SparseModel model = AlongX({0, 0.4, 0.8, 9});
+  PlannedSource source(model);
+  const Track track(model, InOrder(model), {});
+  const auto choose = [&](int first, const std::vector<int>& ranked) {
+    PictureCache pictures(&source);
+    return SelectBestSecond(track, first, ranked, 20, &pictures);
+  };
+  EXPECT_EQ(choose(2, {0, 1}).position, 0) << "before the first one on the track";
+  EXPECT_EQ(choose(2, {3, 1}).position, 1);
+  EXPECT_EQ(choose(2, {3}).position, -1);
+  EXPECT_NE(choose(2, {3}).why_none.find("too few matches"), std::string::npos);
+  EXPECT_NE(choose(2, {}).why_none.find("no other picture sees"), std::string::npos);
+  source.unreadable = 0;
+  EXPECT_EQ(choose(2, {0, 1}).position, 1);
+  EXPECT_EQ(choose(0, {1}).why_none, "the picture cannot be read");
+  // Shared points of the model are seeds too.
+  source.has_matches = false;
+  EXPECT_EQ(choose(2, {1}).position, 1);
 }
 
 }  // namespace

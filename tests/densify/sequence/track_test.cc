@@ -21,14 +21,16 @@ SparseModel ModelOf(const std::vector<std::string>& names) {
   return model;
 }
 
-TEST(TrackTest, NaturalOrderOfNames) {
-  const SparseModel model = ModelOf({"a10.jpg", "a9.jpg", "a1.jpg"});
-  const Track track(model, {});
-  EXPECT_EQ(track.Order(), (std::vector<int>{2, 1, 0}));
+TEST(TrackTest, PositionsAreThoseOfTheOrder) {
+  const SparseModel model = ModelOf({"c", "b", "a"});
+  const Track track(model, {2, 0, 1}, {});
+  EXPECT_EQ(track.Order(), (std::vector<int>{2, 0, 1}));
   EXPECT_EQ(track.Length(), 3);
-  EXPECT_EQ(track.Image(2).name, "a10.jpg");
-  EXPECT_EQ(track.ViewOf(1).image_idx, 1);
-  EXPECT_EQ(track.ViewOf(1).cam_from_world.translation.x(), 1);
+  EXPECT_EQ(track.Image(2).name, "b");
+  EXPECT_EQ(track.PositionOf(2), 0);
+  EXPECT_EQ(track.PositionOf(1), 2);
+  EXPECT_EQ(track.ViewOf(1).image_idx, 0);
+  EXPECT_EQ(track.ViewOf(2).cam_from_world.translation.x(), 1);
   EXPECT_EQ(track.LongerSide(0), 40);
   EXPECT_EQ(track.RightOf(0), -1);
   EXPECT_TRUE(track.CanStartPair(1));
@@ -40,8 +42,11 @@ TEST(TrackTest, RightPicturesStandBehindTheTrack) {
   StereoRig rig;
   rig.is_right = {1, 0, 0, 1, 1};
   rig.right_of = {-1, 4, 0, -1, -1};
-  const Track track(model, rig);
+  const Track track(model, {2, 1, 0, 4, 3}, rig);
   EXPECT_EQ(track.Order(), (std::vector<int>{2, 1, 0, 4, 3}));
+  const Track mixed(model, {0, 2, 4, 1, 3}, rig);
+  EXPECT_EQ(mixed.Order(), track.Order());
+  EXPECT_EQ(mixed.PositionOf(4), 3);
   EXPECT_EQ(track.NumPictures(), 5);
   EXPECT_EQ(track.Length(), 2);
   EXPECT_EQ(track.RightOf(0), 2);
@@ -54,7 +59,7 @@ TEST(TrackTest, RightPicturesStandBehindTheTrack) {
 
 TEST(TrackTest, NoPictures) {
   const SparseModel model;
-  const Track track(model, {});
+  const Track track(model, {}, {});
   EXPECT_EQ(track.NumPictures(), 0);
   EXPECT_FALSE(track.CanStartPair(0));
 }
