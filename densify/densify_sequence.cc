@@ -6,6 +6,7 @@
 
 #include "densify/overlap/coverage.h"
 #include "densify/run_pair.h"
+#include "densify/sequence/best_view.h"
 #include "densify/sequence/completion.h"
 #include "densify/sequence/covisibility.h"
 #include "densify/sequence/open_surface.h"
@@ -62,7 +63,7 @@ PairOverlap AssessOverlap(const SequenceContext& context, const SequenceMemory& 
 std::vector<SeaPointLabel> LabelsThatCount(const SequenceContext& context,
                                            const PairOverlap& overlap) {
   const bool by_label =
-      context.mode == DensificationMode::kPartial && !overlap.known.closed.empty();
+      context.mode == DensificationMode::kPartial && context.redundancy == Redundancy::kSequential;
   return by_label ? overlap.labels : std::vector<SeaPointLabel>();
 }
 
@@ -83,6 +84,29 @@ void Remember(const SequenceContext& context, const PairTask& task, std::vector<
   memory->previous.filled = std::move(filled);
 }
 
+// What a picture may measure of each cell before better pairs have had their turn (ours).
+std::vector<double> AdmissibleIn(const SequenceContext& context, int position,
+                                 const std::vector<double>& predicted_range) {
+  std::vector<View> others;
+  for (const int partner : BestPartners(context.track, context.covisibility, position)) {
+    if (others.size() < kMaxCandidates) others.push_back(context.track.ViewOf(partner));
+  }
+  return AdmissibleUncertainty(context.track.ViewOf(position), others, context.Cells(position),
+                               predicted_range);
+}
+
+// Where a completion pass comes back for it, a place is left to the pair that measures it best.
+void LeaveToBetterPairs(const SequenceContext& context, PairTask* task) {
+  if (!Completes(context) || context.mode != DensificationMode::kPartial) return;
+  const Track& track = context.track;
+  KnownCells& known = task->overlap.known;
+  const std::vector<double> ranges =
+      PredictRanges(context.model, track.Image(task->first), track.ViewOf(task->first),
+                    {known.grid, known.covered_range});
+  LeaveToBetterPairs(track.ViewOf(task->first), track.ViewOf(task->second), ranges,
+                     AdmissibleIn(context, task->first, ranges), &known);
+}
+
 // Overlap, labels, seeds, propagation, reprojection (paper 2.5 to 2.7). Whether the pair gave
 // something.
 bool DensifyNewAreas(const SequenceContext& context, int first, int second, SequenceMemory* memory,
@@ -93,6 +117,7 @@ bool DensifyNewAreas(const SequenceContext& context, int first, int second, Sequ
       context.pictures->Prefetch(context.track.ImageIdx(ahead));
   }
   PairTask task{first, second, "sequence", AssessOverlap(context, *memory, first), {}};
+  LeaveToBetterPairs(context, &task);
   task.seeds = FormSeeds(context, first, second, LabelsThatCount(context, task.overlap));
   PairOutcome pair = RunPair(context, task);
   Deliver(context, task, pair, memory, report);
@@ -215,14 +240,20 @@ PairTask TaskOf(const SequenceContext& context, int position, const CompletionTa
   return task;
 }
 
-void CompletePicture(const SequenceContext& context, int position, GivenUp* given_up,
-                     SequenceMemory* memory, SequenceReport* report) {
+// Which of a picture's cells its pairs may measure.
+enum class CompletionRound { kBestViews, kTheRest };
+
+void CompletePicture(const SequenceContext& context, int position, CompletionRound round,
+                     GivenUp* given_up, SequenceMemory* memory, SequenceReport* report) {
   const View view = context.track.ViewOf(position);
   std::vector<CompletionCandidate> candidates = CandidatesOf(context, position, *memory);
   CompletionView seen = LookAt(view, context.Cells(position), memory->footprints, *given_up);
   for (int tries = 0; tries < kMaxPartners && !candidates.empty(); ++tries) {
     seen.predicted_range =
         PredictRanges(context.model, context.track.Image(position), view, seen.coverage);
+    if (round == CompletionRound::kBestViews) {
+      seen.admissible = AdmissibleIn(context, position, seen.predicted_range);
+    }
     const CompletionTarget target = SelectCompletionPartner(view, seen, candidates);
     if (target.partner < 0) return;
     Drop(target.partner, &candidates);
@@ -237,13 +268,19 @@ void CompletePicture(const SequenceContext& context, int position, GivenUp* give
 }
 
 // The completion pass (ours): picture by picture, each with up to three partners, what two pictures
-// see, of whatever strip, and no pair has covered.
+// see, of whatever strip, and no pair has covered. First each place by the pair that measures it
+// best, then what is left by whatever pair measures it.
 void CompleteSequence(const SequenceContext& context, const std::function<void(int64_t)>& progress,
                       SequenceMemory* memory, SequenceReport* report) {
-  GivenUp given_up;
-  for (int position = 0; position < context.track.NumPictures(); ++position) {
-    CompletePicture(context, position, &given_up, memory, report);
-    progress(position + 1);
+  const int num_pictures = context.track.NumPictures();
+  int64_t done = 0;
+  for (const auto round : {CompletionRound::kBestViews, CompletionRound::kTheRest}) {
+    GivenUp given_up;
+    for (int position = 0; position < num_pictures; ++position) {
+      CompletePicture(context, position, round, &given_up, memory, report);
+      progress(++done);
+    }
+    memory->tried_pairs.clear();  // they were not tried on all that they see
   }
 }
 
@@ -267,7 +304,7 @@ SequenceReport DensifySequence(const SparseModel& given_model, PictureSource* so
                                 options,     options.Mode(), options.AgainstWhat(),
                                 num_threads, callbacks,      &pictures};
   const int64_t num_pictures = track.NumPictures();
-  const int64_t total = num_pictures * (Completes(context) ? 2 : 1);
+  const int64_t total = num_pictures * (Completes(context) ? 3 : 1);
   const auto progress = [&](int64_t done) {
     if (callbacks.progress) callbacks.progress(done, total);
   };

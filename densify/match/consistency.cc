@@ -9,7 +9,7 @@ namespace colmap_seapoint {
 
 namespace {
 
-constexpr float kMaxStep = 1.0f;    // disparity between neighbouring samples of one surface
+constexpr float kMaxStep = 3.0f;    // disparity between neighbouring samples of one surface
 constexpr int kMinAgreeing = 3;     // of a sample's 8 neighbours
 constexpr int kMinSpeckSize = 12;   // nodes
 constexpr uint8_t kMinSupport = 6;  // samples of one surface, in a window of 25 or more

@@ -15,8 +15,8 @@ namespace {
 constexpr int kUnmatched = -1;
 constexpr float kMinImprovement = 0.02f;  // that a colliding region needs to take a sample over
 constexpr int kSeedSearch = 2;            // pixels of disparity around a seed's own
-constexpr int kMaxSearch = kMaxNodeStep / 2;
-constexpr int64_t kChunk = 128;  // nodes a task
+constexpr int kMaxSearch = kMaxNodeStep * 3 / 4;  // a slope of 0.75 from node to node
+constexpr int64_t kChunk = 128;                   // nodes a task
 
 struct Candidate {
   int disparity = kUnmatched;
@@ -86,7 +86,7 @@ class Propagation {
         gate_(gate),
         options_(options),
         num_threads_(num_threads),
-        search_(grid_.step / 2),
+        search_(grid_.step * 3 / 4),
         nodes_(grid_.Size()) {}
 
   PartialDisparity Run(const std::vector<Seed>& seeds) {

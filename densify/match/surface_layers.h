@@ -9,7 +9,7 @@
 
 namespace colmap_seapoint {
 
-inline constexpr float kMaxLayerSlope = 1.2f;  // pixels of disparity a pixel, on one surface
+inline constexpr float kMaxLayerSlope = 2.0f;  // pixels of disparity a pixel, on one surface
 
 // One mark for each of a tile's nodes and of the ring of nodes around them, [row][column] as in
 // tile::Prediction.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "densify/sequence/best_view.h"
 #include "densify/sequence/covisibility.h"
 #include "densify/sequence/open_surface.h"
 
@@ -56,6 +57,10 @@ Gain GainWith(const View& partner, const View& view, const CompletionView& seen,
     const double parallax = ParallaxDeg(open.places[i], center1, center2);
     if (parallax < kMinParallaxDeg || parallax > kMaxParallaxDeg ||
         !SeesWell(partner, open.places[i])) {
+      continue;
+    }
+    if (!seen.admissible.empty() &&
+        RangeUncertainty(view, partner, open.places[i]) > seen.admissible[open.cells[i]]) {
       continue;
     }
     gain.closed[open.cells[i]] = 0;

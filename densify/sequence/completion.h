@@ -32,9 +32,10 @@ struct CompletionView {
   ViewCoverage coverage;
   std::vector<double> predicted_range;  // PredictRanges
   std::vector<uint8_t> tries;           // how often its surface was tried in vain, 0 .. kMaxTries
+  std::vector<double> admissible;       // AdmissibleUncertainty; empty: any will do
 };
 
-// All of it but the predicted ranges.
+// All of it but the predicted ranges and what is admissible.
 CompletionView LookAt(const View& view, const CellGrid& cells,
                       const std::vector<PackedFootprint>& footprints, const GivenUp& given_up);
 
