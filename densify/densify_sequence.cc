@@ -232,7 +232,7 @@ PairTask TaskOf(const SequenceContext& context, int position, const CompletionTa
                 const CompletionView& seen) {
   PairTask task{position, target.partner, "completion", {}, {}};
   task.overlap.rate = seen.coverage.CoveredShare();
-  task.overlap.known = {seen.coverage.grid, target.closed, {}};
+  task.overlap.known = {seen.coverage.grid, target.closed, {}, {}};
   task.seeds = FormSeeds(context, position, target.partner, {});
   const std::vector<PixelPair> rim =
       SeedsAlongRim(context.track.ViewOf(position), context.track.ViewOf(target.partner), seen);

@@ -25,19 +25,28 @@ std::array<uint8_t, 3> ColorNear(const Picture& picture, float x, float y) {
 class PointChoice {
  public:
   PointChoice(const PartialSurface& surface, const PairGeometry& geometry) : surface_(surface) {
+    double passed = 0;  // points of a row up to here
     for (int a = 0; a < surface.grid.width; ++a) {
-      stride_.push_back(geometry.SampleStride(surface.grid.RectX(a)));
+      const double spacing = geometry.SampleSpacing(surface.grid.RectX(a));
+      columns_.push_back({spacing, std::floor(passed + 1 / spacing) > std::floor(passed)});
+      passed += 1 / spacing;
     }
   }
 
   bool Holds(int a, int b) const {
-    const int stride = stride_[static_cast<size_t>(a)];
-    return a % stride == 0 && b % stride == 0 && RowOf(surface_.disparity, surface_.grid, b)[a] > 0;
+    const Column& column = columns_[static_cast<size_t>(a)];
+    return column.is_chosen && RowOf(surface_.disparity, surface_.grid, b)[a] > 0 &&
+           std::floor((b + 1) / column.spacing) > std::floor(b / column.spacing);
   }
 
  private:
+  struct Column {
+    double spacing;  // between the samples of a column that become points
+    bool is_chosen;
+  };
+
   const PartialSurface& surface_;
-  std::vector<int> stride_;
+  std::vector<Column> columns_;
 };
 
 // The points of one row of samples.

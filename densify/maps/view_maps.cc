@@ -61,7 +61,7 @@ PatchFrame FrameOf(const SampleFrame& frame, const Eigen::Vector3d& in_rect) {
   Eigen::Matrix3d touching_from_rect;
   touching_from_rect << y_axis.cross(z_axis).transpose(), y_axis.transpose(), z_axis.transpose();
   return {touching_from_rect * rect_from_world, geometry.focal * in_rect.norm() / across,
-          frame.step * geometry.SampleStride(x)};
+          frame.step * geometry.SampleSpacing(x)};
 }
 
 }  // namespace

@@ -50,9 +50,15 @@ struct KnownCells {
   // Distance of the known surface from the camera's centre, world units, 0 where none is known
   // (ours): there only what differs from that surface is reconstructed.
   std::vector<float> covered_range;
+  // Where the surface runs away from the camera within a cell, the distance of its farthest part;
+  // empty: as covered_range.
+  std::vector<float> covered_far = {};
 
   bool IsClosed(size_t cell) const { return !closed.empty() && closed[cell] != 0; }
   bool IsCovered(size_t cell) const { return !covered_range.empty() && covered_range[cell] > 0; }
+  float FarthestCovered(size_t cell) const {
+    return covered_far.empty() ? covered_range[cell] : covered_far[cell];
+  }
   bool IsNew(size_t cell) const { return !IsClosed(cell) && !IsCovered(cell); }
 };
 

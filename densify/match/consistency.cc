@@ -9,13 +9,13 @@ namespace colmap_seapoint {
 
 namespace {
 
-constexpr float kMaxStep = 3.0f;    // disparity between neighbouring samples of one surface
+constexpr float kMaxSlope = 1.5f;   // pixels of disparity a pixel, on one surface
 constexpr int kMinAgreeing = 3;     // of a sample's 8 neighbours
 constexpr int kMinSpeckSize = 12;   // nodes
 constexpr uint8_t kMinSupport = 6;  // samples of one surface, in a window of 25 or more
 
 float SurfaceTolerance(const PartialDisparity& partial) {
-  return kMaxStep * std::max(1.0f, 0.5f * static_cast<float>(partial.grid.step));
+  return std::max(1.0f, kMaxSlope * static_cast<float>(partial.grid.step));
 }
 
 void Remove(size_t node, PartialDisparity* partial) {
@@ -77,10 +77,6 @@ void ForEachOf8(const SampleGrid& grid, int a, int b, const Visit& visit) {
 }
 
 // What is reconstructed already counts as a neighbour, so that the rim of a new area stays.
-bool AgreesWithGate(float gate, float disparity) {
-  return gate > 0 && !Gate::Admits(gate, disparity);
-}
-
 void RemoveLoners(const Gate& gate, PartialDisparity* partial) {
   const SampleGrid& grid = partial->grid;
   const float tolerance = SurfaceTolerance(*partial);
@@ -95,7 +91,7 @@ void RemoveLoners(const Gate& gate, PartialDisparity* partial) {
       ForEachOf8(grid, a, b, [&](size_t neighbor, int x, int y) {
         const float other = partial->disparity[neighbor];
         const bool same = other > 0 && std::abs(other - disparity) <= tolerance;
-        if (same || AgreesWithGate(gate.At(x, y), disparity)) ++agreeing;
+        if (same || gate.Holds(gate.Nodes().IndexAt(x, y), disparity)) ++agreeing;
       });
       if (agreeing < kMinAgreeing) loners.push_back(node);
     }
@@ -118,7 +114,7 @@ void RemoveSpecks(const Gate& gate, PartialDisparity* partial) {
       const float disparity = partial->disparity[node];
       const int a = static_cast<int>(node) % grid.width, b = static_cast<int>(node) / grid.width;
       ForEachOf8(grid, a, b, [&](size_t neighbor, int x, int y) {
-        if (AgreesWithGate(gate.At(x, y), disparity)) ++num_supporting;
+        if (gate.Holds(gate.Nodes().IndexAt(x, y), disparity)) ++num_supporting;
         const float other = partial->disparity[neighbor];
         if (seen[neighbor] || other <= 0 || std::abs(other - disparity) > tolerance) return;
         seen[neighbor] = 1;
@@ -150,9 +146,8 @@ void RemoveContradictions(const Gate& gate, int num_threads, PartialDisparity* s
       for (int a = 0; a < grid.width; ++a) {
         const size_t sample = row + static_cast<size_t>(a);
         const float disparity = samples->disparity[sample];
-        if (disparity <= 0 || Gate::Admits(gate.At(grid.PixelX(a), grid.PixelY(b)), disparity)) {
-          continue;
-        }
+        const size_t node = gate.Nodes().IndexAt(grid.PixelX(a), grid.PixelY(b));
+        if (disparity <= 0 || gate.Admits(node, disparity)) continue;
         Remove(sample, samples);
       }
       RemoveDoubleClaims(b, samples, &owner);

@@ -14,7 +14,7 @@ namespace {
 constexpr int kGrowthWindow = 7;      // pixels
 constexpr float kGrowthZncc = 0.85f;  // of min_zncc
 constexpr int kSmoothing = 4;         // pixels around a sample that its plane is fitted to
-constexpr float kMaxSlope = 1.5f;     // pixels of disparity a pixel, on one surface
+constexpr float kMaxSlope = 0.75f;    // pixels of disparity a pixel, on one surface
 
 // Refinement follows the surface a little beyond the last nodes, so growth ends that much earlier.
 int MaxGenerations(const PairPlan& plan) {

@@ -143,12 +143,6 @@ double PairGeometry::Magnification(double x) const {
   return surface == RectSurface::kPlane ? 1 : focal * std::cosh(x / focal) / camera1.MeanFocal();
 }
 
-int PairGeometry::SampleStride(double x) const {
-  int stride = 1;
-  while (Magnification(x) >= 2 * stride) stride *= 2;
-  return stride;
-}
-
 std::optional<PairGeometry> MakePairGeometry(const Camera& camera1, const Rigid3d& cam1_from_world,
                                              const Camera& camera2,
                                              const Rigid3d& cam2_from_world) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <optional>
 
 #include "colmap_seapoint/base/camera.h"
@@ -62,9 +63,9 @@ struct PairGeometry {
   double SineOfParallax(double x, double y, double disparity) const;
   // How many rect pixels a pixel of camera 1 is drawn across, about: grows towards the epipole.
   double Magnification(double x) const;
-  // Where the map magnifies, only every so many samples of a row and every so many rows become
-  // points, so that a cloud is not denser there than picture 1: 1, 2, 4 ...
-  int SampleStride(double x) const;
+  // Where the map magnifies, only one of so many samples of a row, and of the rows, becomes a
+  // point, so that a cloud is nowhere denser than picture 1: 1 or more.
+  double SampleSpacing(double x) const { return std::max(1.0, Magnification(x)); }
 };
 
 // nullopt when the cameras coincide. The plane where both pictures fit on it without much stretch,

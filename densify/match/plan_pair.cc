@@ -62,9 +62,8 @@ void AddSeeds(const std::vector<PixelPair>& pairs, PairPlan* plan) {
     const auto seed = SeedOf(plan->geometry, pair);
     if (!seed) continue;
     if (avoided.IsCovered(cell)) {
-      const double covered =
-          plan->geometry.DisparityAtRange(seed->x, seed->y, avoided.covered_range[cell]);
-      if (!Gate::Admits(static_cast<float>(covered), static_cast<float>(seed->disparity))) continue;
+      const CoveredBand covered = CoveredAt(plan->geometry, avoided, cell, seed->x, seed->y);
+      if (!covered.Excludes(static_cast<float>(seed->disparity))) continue;
       plan->covered_seeds.push_back(*seed);
     }
     plan->seeds.push_back(*seed);
@@ -125,6 +124,12 @@ bool IsTooSmall(const RectWindow& window) {
 }
 
 }  // namespace
+
+CoveredBand CoveredAt(const PairGeometry& geometry, const KnownCells& known, size_t cell, double x,
+                      double y) {
+  return {static_cast<float>(geometry.DisparityAtRange(x, y, known.FarthestCovered(cell))),
+          static_cast<float>(geometry.DisparityAtRange(x, y, known.covered_range[cell]))};
+}
 
 PairPlan PlanPair(const PairInput& input, const MatchOptions& options) {
   const Camera& camera1 = input.view1.camera;

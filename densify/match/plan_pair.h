@@ -50,6 +50,10 @@ struct PairPlan {
   RectWindow window1, window2;
 };
 
+// What covers a cell, as disparities at the rect position (x, y).
+CoveredBand CoveredAt(const PairGeometry& geometry, const KnownCells& known, size_t cell, double x,
+                      double y);
+
 // Ordinary failures: the cameras coincide, there are fewer than five usable seeds, or
 // the pictures do not overlap. Cost: O(cells + seeds).
 PairPlan PlanPair(const PairInput& input, const MatchOptions& options);

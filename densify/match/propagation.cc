@@ -187,8 +187,8 @@ class Propagation {
   Candidate Best(int target, int* disparities, int count) const {
     Candidate best;
     const int i = grid_.PixelX(target % grid_.width), j = grid_.PixelY(target / grid_.width);
-    const float gate = gate_.At(i, j);
-    if (gate == Gate::kClosed || !matcher_.Fits1(i, j)) return best;
+    const size_t node = static_cast<size_t>(target);
+    if (gate_[node] == Gate::kClosed || !matcher_.Fits1(i, j)) return best;
     std::sort(disparities, disparities + count);
     int first = 0, run = 0;  // disparities scored at once
     std::array<float, zncc::kMaxRun> scores;
@@ -199,7 +199,7 @@ class Propagation {
         run = std::min(zncc::kMaxRun, disparities[count - 1] - first + 1);
         matcher_.ScoreRun(i, j, first, run, scores.data());
       }
-      if (!Gate::Admits(gate, static_cast<float>(disparity))) continue;
+      if (!gate_.Admits(node, static_cast<float>(disparity))) continue;
       const float score = scores[static_cast<size_t>(disparity - first)];
       if (score > best.score) best = {disparity, score};
     }

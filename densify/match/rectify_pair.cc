@@ -33,10 +33,12 @@ Gate MakeGate(const PairPlan& plan, const std::vector<int>& cell_of_node) {
               kMinSineOfParallax) {
         continue;
       }
-      gate[node] = Gate::kOpen;
-      if (!plan.avoided.IsCovered(cell)) continue;
-      gate[node] = static_cast<float>(plan.geometry.DisparityAtRange(
-          nodes.RectX(a), nodes.RectY(b), plan.avoided.covered_range[cell]));
+      if (plan.avoided.IsCovered(cell)) {
+        gate.Cover(node,
+                   CoveredAt(plan.geometry, plan.avoided, cell, nodes.RectX(a), nodes.RectY(b)));
+      } else {
+        gate.Open(node);
+      }
     }
   }
   return gate;

@@ -16,7 +16,7 @@ struct RefinementOptions {
 
 // How far samples may lie from a matched node, in nodes: the surface is followed into what
 // propagation could not match.
-inline constexpr int kMaxRefinementSpread = 8;
+inline constexpr int kMaxRefinementSpread = 4;
 
 // `nodes` come from Propagate. Samples lie in the surroundings of matched nodes
 // (kMaxRefinementSpread), never at closed ones. Tiles of 64 x 32 pixels are independent: the same

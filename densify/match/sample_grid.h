@@ -3,8 +3,8 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "densify/kernels/node_step.h"
@@ -49,34 +49,50 @@ struct SampleGrid {
   int FirstFrom(int pixel) const { return (pixel - step / 2 + step - 1) / step; }
 };
 
+// Disparities of what is reconstructed already, from the farthest to the nearest of one surface.
+struct CoveredBand {
+  float low = 0, high = 0;
+
+  // Whether a disparity differs clearly from all of it.
+  bool Excludes(float disparity) const {
+    return disparity < low - (4 + 0.04f * low) || disparity > high + (4 + 0.04f * high);
+  }
+};
+
 // Propagation works on a coarse grid of samples, the nodes, 4 or 8 pixels apart (node_step.h);
 // refinement fills in between. The gate says at each node where picture 1 may be matched. kClosed:
-// not at all. kOpen: yes. A positive value: something at that disparity is reconstructed already,
-// so only what differs clearly from it may be matched.
+// not at all. kOpen: yes. kCovered: only what differs clearly from what is reconstructed there.
 class Gate {
  public:
-  static constexpr float kOpen = -1;
-  static constexpr float kClosed = -2;
+  enum State : uint8_t { kOpen, kClosed, kCovered };
 
   Gate() = default;
-  Gate(const RectWindow& window, int node_step, float value)
-      : nodes_(window, node_step), value_(nodes_.Size(), value) {}
+  Gate(const RectWindow& window, int node_step, State state)
+      : nodes_(window, node_step), state_(nodes_.Size(), state), band_(nodes_.Size()) {}
 
   const SampleGrid& Nodes() const { return nodes_; }
-  float& operator[](size_t node) { return value_[node]; }
-  float operator[](size_t node) const { return value_[node]; }
-  // The value of the node whose square holds a window pixel.
-  float At(int x, int y) const { return value_[nodes_.IndexAt(x, y)]; }
-  // Whether a gate's value lets a disparity pass.
-  static bool Admits(float gate, float disparity) {
-    if (gate == kOpen) return true;
-    if (gate == kClosed) return false;
-    return std::abs(disparity - gate) > 4 + 0.04f * gate;
+  void Open(size_t node) { state_[node] = kOpen; }
+  void Close(size_t node) { state_[node] = kClosed; }
+  void Cover(size_t node, const CoveredBand& band) {
+    state_[node] = kCovered;
+    band_[node] = band;
+  }
+  State operator[](size_t node) const { return state_[node]; }
+  // The node whose square holds a window pixel.
+  State At(int x, int y) const { return state_[nodes_.IndexAt(x, y)]; }
+  // Whether a disparity may be matched there.
+  bool Admits(size_t node, float disparity) const {
+    return state_[node] == kOpen || (state_[node] == kCovered && band_[node].Excludes(disparity));
+  }
+  // Whether a disparity is that of what is reconstructed there.
+  bool Holds(size_t node, float disparity) const {
+    return state_[node] == kCovered && !band_[node].Excludes(disparity);
   }
 
  private:
   SampleGrid nodes_;
-  std::vector<float> value_;
+  std::vector<State> state_;
+  std::vector<CoveredBand> band_;
 };
 
 // What was matched (paper 2.6, Figure 13), one value a sample: of propagation on nodes, of

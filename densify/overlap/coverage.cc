@@ -7,6 +7,9 @@ namespace colmap_seapoint {
 
 namespace {
 
+// Patches of one cell belong to one surface when the farther one is no farther than this much.
+constexpr float kOneSurface = 1.15f;
+
 // A cone around the optical axis that holds the picture.
 struct ViewCone {
   bool is_all = false;          // for pictures that see more than 80 degrees aside
@@ -58,7 +61,14 @@ void MarkPatch(const Eigen::Vector3d& in_cam, const SurfacePatch& patch, const C
       float& range = coverage->range[static_cast<size_t>(b) * static_cast<size_t>(grid.width) +
                                      static_cast<size_t>(a)];
       const float candidate = static_cast<float>(distance);
-      if (range == 0 || candidate < range) range = candidate;
+      float& far = coverage->far[static_cast<size_t>(b) * static_cast<size_t>(grid.width) +
+                                 static_cast<size_t>(a)];
+      if (range == 0 || candidate < range) {
+        far = std::max(candidate, far <= kOneSurface * candidate ? far : 0);
+        range = candidate;
+      } else if (candidate <= kOneSurface * range) {
+        far = std::max(far, candidate);
+      }
     }
   }
 }

@@ -21,6 +21,9 @@ inline constexpr float kMinCoveredCell = 0.9f;
 struct ViewCoverage {
   CellGrid grid;
   std::vector<float> range;  // world units
+  // Of its farthest part in the cell, where it runs away from the camera (a seabed seen at a
+  // grazing angle): up to 1.15 times as far.
+  std::vector<float> far = std::vector<float>(range.size(), 0.0f);
 
   double CoveredShare() const;
 };

@@ -17,7 +17,7 @@ PairOverlap OverlapWithPrevious(InfluenceMask mask, const std::vector<SeaPoint>&
   PairOverlap overlap;
   overlap.labels = LabelSeaPoints(mask, points, matches, previous.labels, radius);
   overlap.rate = mask.OverlapRate();
-  overlap.known = {mask.grid, mask.marked, {}};
+  overlap.known = {mask.grid, mask.marked, {}, {}};
   overlap.mask = std::move(mask);
   return overlap;
 }
@@ -33,7 +33,7 @@ PairOverlap OverlapWithAll(PairOverlap overlap, const ViewCoverage& coverage,
     }
   }
   overlap.rate = coverage.CoveredShare();
-  overlap.known = {coverage.grid, {}, coverage.range};
+  overlap.known = {coverage.grid, {}, coverage.range, coverage.far};
   return overlap;
 }
 

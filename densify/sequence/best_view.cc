@@ -105,9 +105,10 @@ void LeaveToBetterPairs(const View& view, const View& partner,
   for (size_t cell = 0; cell < grid.Size(); ++cell) {
     if (predicted_range[cell] <= 0) continue;
     const auto place = PointAt(view, world_from_cam, grid, cell, predicted_range[cell]);
-    if (place && RangeUncertainty(view, partner, *place) > admissible[cell]) {
-      known->closed[cell] = 1;
-    }
+    if (!place) continue;
+    // Where the pair measures nothing, at the rims, there is nothing to be left.
+    const double uncertainty = RangeUncertainty(view, partner, *place);
+    if (uncertainty < kInfinite && uncertainty > admissible[cell]) known->closed[cell] = 1;
   }
 }
 

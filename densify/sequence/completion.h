@@ -32,7 +32,7 @@ struct CompletionView {
   ViewCoverage coverage;
   std::vector<double> predicted_range;  // PredictRanges
   std::vector<uint8_t> tries;           // how often its surface was tried in vain, 0 .. kMaxTries
-  std::vector<double> admissible;       // AdmissibleUncertainty; empty: any will do
+  std::vector<double> admissible = {};  // AdmissibleUncertainty; empty: any will do
 };
 
 // All of it but the predicted ranges and what is admissible.

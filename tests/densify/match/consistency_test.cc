@@ -114,8 +114,9 @@ TEST(ConsistencyTest, WhatTheGateDoesNotAdmitGoes) {
     PartialDisparity partial = Empty(40, 20, step);
     Gate gate = OpenGate(partial);
     for (size_t node = 0; node < gate.Nodes().Size(); ++node) {
-      const float kinds[] = {Gate::kOpen, Gate::kClosed, 50, 80};
-      gate[node] = kinds[node % 4];
+      if (node % 4 == 1) gate.Close(node);
+      if (node % 4 == 2) gate.Cover(node, {50, 50});
+      if (node % 4 == 3) gate.Cover(node, {80, 80});
     }
     for (int b = 0; b < 20; ++b) {
       for (int a = 0; a < 40; ++a) Put(a, b, 53, 0.9f, &partial);
@@ -124,8 +125,8 @@ TEST(ConsistencyTest, WhatTheGateDoesNotAdmitGoes) {
     int num_left = 0, num_gone = 0;
     for (int b = 0; b < partial.grid.height; ++b) {
       for (int a = 0; a < partial.grid.width; ++a) {
-        const float value = gate.At(partial.grid.PixelX(a), partial.grid.PixelY(b));
-        const bool admitted = value == Gate::kOpen || value == 80;
+        const size_t node = gate.Nodes().IndexAt(partial.grid.PixelX(a), partial.grid.PixelY(b));
+        const bool admitted = node % 4 == 0 || node % 4 == 3;
         ASSERT_EQ(At(partial, a, b), admitted ? 53 : 0);
         ++(admitted ? num_left : num_gone);
       }
@@ -181,8 +182,7 @@ TEST(ConsistencyTest, WhatIsReconstructedSupports) {
     Gate gate(partial.grid.window, kMinNodeStep, Gate::kOpen);
     for (int y = 8; y < 16; y += kMinNodeStep) {
       for (int x = 0; x < 12; x += kMinNodeStep) {
-        gate[static_cast<size_t>(y / kMinNodeStep * gate.Nodes().width + x / kMinNodeStep)] =
-            gate_disparity;
+        gate.Cover(gate.Nodes().IndexAt(x, y), {gate_disparity, gate_disparity});
       }
     }
     RemoveInconsistent(gate, &partial);

@@ -114,7 +114,10 @@ TEST(RectifyPairTest, GateTellsClosedOpenAndCovered) {
       EXPECT_EQ(pair.gate[node], Gate::kClosed);
       ++num_closed;
     } else if (x > 160) {
-      EXPECT_NEAR(pair.gate[node], 30, 0.7);  // the cell's range, at a node beside its centre
+      EXPECT_EQ(pair.gate[node], Gate::kCovered);
+      EXPECT_TRUE(pair.gate.Holds(node, 30));
+      EXPECT_FALSE(pair.gate.Holds(node, 30 - 6.5f));  // 4 and a 25th beside the cell's range
+      EXPECT_FALSE(pair.gate.Holds(node, 30 + 6.5f));
       ++num_covered;
     } else {
       EXPECT_EQ(pair.gate[node], Gate::kOpen);

@@ -95,10 +95,11 @@ TEST(PropagationTest, GatesHold) {
   Wall wall;
   for (int y = 0; y < kNodesY; ++y) {
     for (int x = 0; x < kNodesX; ++x) {
-      float& gate = wall.gate[static_cast<size_t>(y * kNodesX + x)];
-      if (x >= 100 && x < 110) gate = Gate::kClosed;
-      if (y < 20) gate = kDisparity + 2;   // reconstructed already, about there
-      if (y >= 45) gate = kDisparity + 9;  // something else is: this is new
+      const auto node = static_cast<size_t>(y * kNodesX + x);
+      const auto cover = [&](float disparity) { wall.gate.Cover(node, {disparity, disparity}); };
+      if (x >= 100 && x < 110) wall.gate.Close(node);
+      if (y < 20) cover(kDisparity + 2);   // reconstructed already, about there
+      if (y >= 45) cover(kDisparity + 9);  // something else is: this is new
     }
   }
   const PartialDisparity partial = wall.Grow({SeedAt(60, 30, kDisparity)});
@@ -114,11 +115,22 @@ TEST(PropagationTest, GatesHold) {
       }
     }
   }
-  EXPECT_TRUE(Gate::Admits(Gate::kOpen, 1));
-  EXPECT_FALSE(Gate::Admits(Gate::kClosed, 1));
-  EXPECT_FALSE(Gate::Admits(100, 107.9f));
-  EXPECT_TRUE(Gate::Admits(100, 108.1f));
-  EXPECT_TRUE(Gate::Admits(100, 91.9f));
+  Gate gate({0, 0, 40, 4}, 4, Gate::kOpen);
+  EXPECT_TRUE(gate.Admits(0, 1));
+  EXPECT_FALSE(gate.Holds(0, 1));
+  gate.Close(0);
+  EXPECT_FALSE(gate.Admits(0, 1));
+  EXPECT_FALSE(gate.Holds(0, 1));
+  // A surface that runs from disparity 100 to 150 within the cell.
+  gate.Cover(0, {100, 150});
+  for (const float disparity : {92.1f, 100.0f, 125.0f, 159.9f}) {
+    EXPECT_FALSE(gate.Admits(0, disparity));
+    EXPECT_TRUE(gate.Holds(0, disparity));
+  }
+  for (const float disparity : {91.9f, 160.1f}) {
+    EXPECT_TRUE(gate.Admits(0, disparity));
+    EXPECT_FALSE(gate.Holds(0, disparity));
+  }
 }
 
 // Windows that the samples, or the nodes, do not fill up.
