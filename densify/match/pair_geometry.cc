@@ -139,6 +139,15 @@ double PairGeometry::SineOfParallax(double x, double y, double disparity) const 
   return baseline * across / (point.norm() * std::hypot(point.x() - baseline, across));
 }
 
+// The derivative of the logarithm of the factor in PointInRect. On Mercator's map that is
+// cosh(u - 2 half) / (2 focal cosh(u - half) sinh(half)), half = disparity / (2 focal).
+double PairGeometry::RangePerDisparity(double x, double disparity) const {
+  if (surface == RectSurface::kPlane) return 1 / disparity;
+  const double grown = std::exp(0.5 * disparity / focal);  // e^half
+  const double at = std::exp(x / focal) / grown;           // e^(u - half)
+  return (at / grown + grown / at) / (focal * (at + 1 / at) * (grown - 1 / grown));
+}
+
 double PairGeometry::Magnification(double x) const {
   return surface == RectSurface::kPlane ? 1 : focal * std::cosh(x / focal) / camera1.MeanFocal();
 }
