@@ -14,13 +14,14 @@ namespace {
 void CompleteDeviation(const PartialDisparity& partial, int begin, int end, int full_support,
                        PartialSurface* surface) {
   const auto width = static_cast<size_t>(partial.grid.width);
+  const auto full = static_cast<float>(full_support);
+  const bool has_own = !partial.deviation.empty();
   for (size_t i = static_cast<size_t>(begin) * width; i < static_cast<size_t>(end) * width; ++i) {
-    if (surface->support[i] == 0) continue;
-    const float scatter = surface->deviation[i];
-    const float own = partial.deviation.empty() ? 0 : partial.deviation[i];
-    surface->deviation[i] = std::sqrt(own * own + scatter * scatter) *
-                            static_cast<float>(full_support) /
-                            static_cast<float>(surface->support[i]);
+    const float scatter = surface->deviation[i], own = has_own ? partial.deviation[i] : 0;
+    const auto support = static_cast<float>(surface->support[i]);
+    if (support > 0) {
+      surface->deviation[i] = std::sqrt(own * own + scatter * scatter) * full / support;
+    }
   }
 }
 
