@@ -13,7 +13,8 @@ namespace {
 
 MatchOptions MatchOptionsOf(const PartialDensificationOptions& options, const Camera& camera1) {
   return {SampleStep(camera1, options.step), options.window_size,
-          static_cast<float>(options.min_zncc), options.max_expansion};
+          static_cast<float>(options.min_zncc), options.max_expansion,
+          static_cast<float>(options.min_confidence)};
 }
 
 // Reprojection, and what the cloud adds to picture 1 and to the survey.

@@ -18,6 +18,10 @@ void PartialDensificationOptions::Bind(OptionTable* table) {
              64);
   table->Add(group + "window_size", &window_size, "correlation window, pixels, odd", "ours", 5, 15);
   table->Add(group + "min_zncc", &min_zncc, "smallest correlation of a match", "ours", 0, 1);
+  table->Add("min_confidence", &min_confidence,
+             "smallest confidence of a point, the probability that it lies within two ground "
+             "sampling distances of the surface; less is not written",
+             "ours", 0, 1);
   table->Add(group + "influence_radius", &influence_radius,
              "radius of a SeaPoint's influence area, share of the picture's longer side",
              "paper 2.5", 0.001, 0.5);

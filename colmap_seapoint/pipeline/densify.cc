@@ -127,7 +127,7 @@ SequenceReport Densify(const PartialDensifierOptions& options, const SparseModel
                                              static_cast<uint32_t>(part.image_idx2)};
     if (maps != nullptr) maps->AddPair(part, cloud->NumPoints());
     for (const DensePoint& point : part.points) {
-      cloud->Add({point.xyz, point.normal, point.rgb}, seen_by.data(), 2);
+      cloud->Add({point.xyz, point.normal, point.rgb, point.confidence}, seen_by.data(), 2);
     }
   };
   callbacks.progress = [&](int64_t done, int64_t total) {

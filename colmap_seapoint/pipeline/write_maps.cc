@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <mutex>
 #include <system_error>
@@ -112,7 +113,9 @@ void MapWriter::AddPair(const PartialCloud& part, uint64_t first_point) {
     block.clear();
   };
   for (const DensePoint& point : part.points) {
-    if (!point.xyz.allFinite() || !point.normal.allFinite()) continue;  // not in the file
+    if (!point.xyz.allFinite() || !point.normal.allFinite() || !std::isfinite(point.confidence)) {
+      continue;  // not in the file
+    }
     all.push_back(point.xyz);
     block.push_back(point.xyz);
     if (block.size() == kBlockPoints) end_block();
@@ -143,7 +146,7 @@ ViewMaps MapWriter::DrawMaps(size_t image_idx, const CloudRanges& cloud) const {
       if (!in_view(block.sphere)) continue;
       points.clear();
       for (const CloudPoint& point : cloud.Read(block.first, block.count)) {
-        points.push_back({point.xyz, point.normal, point.rgb});
+        points.push_back({point.xyz, point.normal, point.rgb, point.confidence});
       }
       renderer.Add(frame, points.data(), points.size());
     }

@@ -86,7 +86,7 @@ class RowToPoints {
     const size_t pixel = static_cast<size_t>(grid.PixelX(a));
     return {(geometry_.world_from_rect * in_rect + geometry_.center1).cast<float>(),
             (geometry_.world_from_rect * normal).cast<float>(),
-            ColorNear(picture1_, x_[pixel], y_[pixel])};
+            ColorNear(picture1_, x_[pixel], y_[pixel]), RowOf(surface_.confidence, grid, b)[a]};
   }
 
   const PartialSurface& surface_;

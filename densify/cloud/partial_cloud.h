@@ -12,6 +12,7 @@ struct DensePoint {
   Eigen::Vector3f xyz;     // world
   Eigen::Vector3f normal;  // world, unit, towards the camera
   std::array<uint8_t, 3> rgb;
+  float confidence;  // 0..1: how probable it is that it lies on the surface (match/confidence.h)
 };
 
 struct PartialCloud {

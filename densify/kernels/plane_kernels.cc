@@ -20,13 +20,13 @@ using VF = hn::Vec<DF>;
 
 // Sums over the samples that agree with the centre, offsets (u, v) in samples from it.
 struct Sums {
-  VF n, u, v, uu, uv, vv, d, ud, vd;
+  VF n, u, v, uu, uv, vv, d, ud, vd, dd;
 };
 
 HWY_INLINE Sums SumAround(const float* const* rows, int at, int radius, VF center, VF tolerance) {
   const DF df;
   const VF zero = hn::Zero(df), one = hn::Set(df, 1.0f);
-  Sums sums = {zero, zero, zero, zero, zero, zero, zero, zero, zero};
+  Sums sums = {zero, zero, zero, zero, zero, zero, zero, zero, zero, zero};
   for (int u = -radius; u <= radius; ++u) {
     VF n = zero, v1 = zero, v2 = zero, d1 = zero, vd = zero;  // of this column
     for (int v = -radius; v <= radius; ++v) {
@@ -41,6 +41,7 @@ HWY_INLINE Sums SumAround(const float* const* rows, int at, int radius, VF cente
       v2 = hn::Add(v2, hn::Mul(weight, hn::Mul(offset, offset)));
       d1 = hn::Add(d1, d);
       vd = hn::Add(vd, hn::Mul(d, offset));
+      sums.dd = hn::Add(sums.dd, hn::Mul(d, d));
     }
     const VF offset = hn::Set(df, static_cast<float>(u));
     sums.n = hn::Add(sums.n, n);
@@ -112,16 +113,39 @@ HWY_INLINE Plane FitPlane(const Sums& s) {
   return {hn::IfThenElseZero(fits, moved), p, q};
 }
 
+// Root mean square of the samples about the plane: what least squares leaves.
+HWY_INLINE VF ScatterAbout(const Plane& plane, const Sums& s) {
+  const DF df;
+  const VF explained =
+      hn::Add(hn::Mul(plane.moved, s.d), hn::Add(hn::Mul(plane.p, s.ud), hn::Mul(plane.q, s.vd)));
+  const VF left = hn::Max(hn::Sub(s.dd, explained), hn::Zero(df));
+  return hn::Sqrt(hn::Div(left, hn::Max(s.n, hn::Set(df, 1.0f))));
+}
+
+// Results of a row, a vector of each.
+struct Block {
+  HWY_ALIGN float value[16] = {}, slope_x[16] = {}, slope_y[16] = {}, scatter[16] = {};
+  HWY_ALIGN uint8_t support[16] = {};
+
+  void CopyTo(const Planes& planes, size_t at, size_t count) const {
+    std::copy_n(value, count, planes.value + at);
+    std::copy_n(slope_x, count, planes.slope_x + at);
+    std::copy_n(slope_y, count, planes.slope_y + at);
+    std::copy_n(scatter, count, planes.scatter + at);
+    std::copy_n(support, count, planes.support + at);
+  }
+};
+
 void FitRows(const Map& map, int begin, int end, int radius, float tolerance, float slope_scale,
-             float* value, float* slope_x, float* slope_y, uint8_t* support) {
+             const Planes& planes) {
   const DF df;
   const hn::RebindToSigned<DF> di;
   const hn::Rebind<uint8_t, DF> du8;
   const int lanes = static_cast<int>(hn::Lanes(df));
   PaddedRows padded(map, radius);
   const float* rows[2 * kMaxRadius + 1];
-  HWY_ALIGN float out_value[16], out_x[16], out_y[16];
-  HWY_ALIGN uint8_t out_support[16];
+  const Block missing;
+  Block block;
   for (int b = begin; b < end; ++b) {
     padded.Around(b, rows);
     const size_t row = static_cast<size_t>(b) * static_cast<size_t>(map.width);
@@ -130,25 +154,20 @@ void FitRows(const Map& map, int begin, int end, int radius, float tolerance, fl
       const auto there = hn::Gt(center, hn::Zero(df));
       const size_t count = static_cast<size_t>(std::min(lanes, map.width - a));
       if (hn::AllFalse(df, there)) {
-        std::fill_n(value + row + a, count, 0.0f);
-        std::fill_n(slope_x + row + a, count, 0.0f);
-        std::fill_n(slope_y + row + a, count, 0.0f);
-        std::fill_n(support + row + a, count, uint8_t{0});
+        missing.CopyTo(planes, row + static_cast<size_t>(a), count);
         continue;
       }
       const Sums s = SumAround(rows, a, radius, center, hn::Set(df, tolerance));
       const Plane plane = FitPlane(s);
       const VF fitted = hn::Add(center, plane.moved);
       const VF scale = hn::Set(df, slope_scale);
-      hn::Store(hn::IfThenElseZero(there, fitted), df, out_value);
-      hn::Store(hn::Mul(plane.p, scale), df, out_x);
-      hn::Store(hn::Mul(plane.q, scale), df, out_y);
+      hn::Store(hn::IfThenElseZero(there, fitted), df, block.value);
+      hn::Store(hn::Mul(plane.p, scale), df, block.slope_x);
+      hn::Store(hn::Mul(plane.q, scale), df, block.slope_y);
+      hn::Store(hn::IfThenElseZero(there, ScatterAbout(plane, s)), df, block.scatter);
       const auto n = hn::ConvertTo(di, hn::IfThenElseZero(there, s.n));
-      hn::Store(hn::DemoteTo(du8, n), du8, out_support);
-      std::copy_n(out_value, count, value + row + a);
-      std::copy_n(out_x, count, slope_x + row + a);
-      std::copy_n(out_y, count, slope_y + row + a);
-      std::copy_n(out_support, count, support + row + a);
+      hn::Store(hn::DemoteTo(du8, n), du8, block.support);
+      block.CopyTo(planes, row + static_cast<size_t>(a), count);
     }
   }
 }
@@ -165,9 +184,8 @@ namespace plane {
 HWY_EXPORT(FitRows);
 
 void FitRows(const Map& map, int begin, int end, int radius, float tolerance, float slope_scale,
-             float* value, float* slope_x, float* slope_y, uint8_t* support) {
-  HWY_DYNAMIC_DISPATCH(FitRows)
-  (map, begin, end, radius, tolerance, slope_scale, value, slope_x, slope_y, support);
+             const Planes& planes) {
+  HWY_DYNAMIC_DISPATCH(FitRows)(map, begin, end, radius, tolerance, slope_scale, planes);
 }
 
 }  // namespace plane

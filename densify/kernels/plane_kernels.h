@@ -14,10 +14,18 @@ struct Map {
   int width, height;
 };
 
-// Rows begin .. end - 1 of the results, which are as large as the map. Slopes are times
-// `slope_scale`, a sample.
+// As large as the map; 0 where that is missing.
+struct Planes {
+  float* value;
+  float* slope_x;
+  float* slope_y;
+  float* scatter;    // root mean square of the samples that agree about the plane, itself too
+  uint8_t* support;  // how many agree, itself too
+};
+
+// Rows begin .. end - 1 of the results. Slopes are times `slope_scale`, a sample.
 void FitRows(const Map& map, int begin, int end, int radius, float tolerance, float slope_scale,
-             float* value, float* slope_x, float* slope_y, uint8_t* support);
+             const Planes& planes);
 
 }  // namespace plane
 }  // namespace colmap_seapoint

@@ -299,7 +299,7 @@ HWY_INLINE Peak FindPeak(const ScoreAt& score_at, VF unusable) {
 
 // Scores of one row of windows, centred on row `center` of the scratch.
 void ScoreRow(const Pair& pair, const Frame& frame, int width, size_t center, Scratch* scratch,
-              float* residual, float* score) {
+              const Results& row) {
   const DI di;
   const DF df;
   const int window = pair.window, half = frame.half;
@@ -308,6 +308,7 @@ void ScoreRow(const Pair& pair, const Frame& frame, int width, size_t center, Sc
   SpreadRow(frame, window, center, scratch);
   const VI n = hn::Set(di, window * window);
   const VF unusable = hn::Set(df, 2.0f);
+  const VF doubt = hn::Set(df, 2.0f / static_cast<float>(window * window));
   for (int x = 0; x < width; x += static_cast<int>(hn::Lanes(df))) {
     const int c = x + half + kReach;
     const VI sum1 = Across(scratch->column[0], c, half);
@@ -330,14 +331,18 @@ void ScoreRow(const Pair& pair, const Frame& frame, int width, size_t center, Sc
     // A shift moves along picture 2, the prediction with it: d = shift + prediction(x - shift).
     const VF slope = hn::Mul(hn::Set(df, 0.5f), hn::Sub(hn::LoadU(df, predicted + c + 1),
                                                         hn::LoadU(df, predicted + c - 1)));
-    const VF moved = hn::Mul(hn::Add(peak.shift, offset), hn::Sub(hn::Set(df, 1.0f), slope));
-    hn::StoreU(hn::IfThenElseZero(found, moved), df, residual + x);
-    hn::StoreU(hn::IfThenElseZero(found, peak.score), df, score + x);
+    const VF stretch = hn::Sub(hn::Set(df, 1.0f), slope);
+    const VF moved = hn::Mul(hn::Add(peak.shift, offset), stretch);
+    const VF variance = hn::Div(hn::Mul(doubt, hn::Sub(peak.score, hn::Set(df, 1.0f))), curvature);
+    const VF deviation = hn::Mul(hn::Sqrt(hn::Max(variance, hn::Zero(df))), stretch);
+    hn::StoreU(hn::IfThenElseZero(found, moved), df, row.residual + x);
+    hn::StoreU(hn::IfThenElseZero(found, peak.score), df, row.score + x);
+    hn::StoreU(hn::IfThenElseZero(found, deviation), df, row.deviation + x);
   }
 }
 
-void Match(const Pair& pair, const Region& region, const Prediction& prediction, float* residual,
-           float* score) {
+void Match(const Pair& pair, const Region& region, const Prediction& prediction,
+           const Results& results) {
   const Frame frame(pair, region);
   Scratch scratch;  // what columns beyond the frame hold is never used
   for (auto& sums : scratch.column) std::fill(std::begin(sums), std::end(sums), 0);
@@ -358,9 +363,9 @@ void Match(const Pair& pair, const Region& region, const Prediction& prediction,
         MoveDown<true>(frame, filled, filled - window, &scratch);
       }
     }
-    ScoreRow(pair, frame, region.width, center, &scratch, residual + out * kRowStride,
-             score + out * kRowStride);
-    ++out;
+    ScoreRow(pair, frame, region.width, center, &scratch,
+             {results.residual + out, results.score + out, results.deviation + out});
+    out += kRowStride;
   }
 }
 
@@ -390,9 +395,9 @@ float PredictedAt(const Prediction& prediction, int x, int y) {
   return left + u * (next - left);
 }
 
-void Match(const Pair& pair, const Region& region, const Prediction& prediction, float* residual,
-           float* score) {
-  HWY_DYNAMIC_DISPATCH(Match)(pair, region, prediction, residual, score);
+void Match(const Pair& pair, const Region& region, const Prediction& prediction,
+           const Results& results) {
+  HWY_DYNAMIC_DISPATCH(Match)(pair, region, prediction, results);
 }
 
 }  // namespace tile

@@ -155,19 +155,23 @@ void RemoveContradictions(const Gate& gate, int num_threads, PartialDisparity* s
   });
 }
 
-void RemoveUnsupported(const PairGeometry& geometry, PartialSurface* surface) {
+void RemoveUnsure(const PairGeometry& geometry, float min_confidence, int num_threads,
+                  PartialSurface* surface) {
   const SampleGrid& grid = surface->grid;
-  for (int b = 0; b < grid.height; ++b) {
+  ParallelFor(num_threads, grid.height, [&](int64_t b) {
     const size_t row = static_cast<size_t>(b) * static_cast<size_t>(grid.width);
     for (int a = 0; a < grid.width; ++a) {
-      float& disparity = surface->disparity[row + static_cast<size_t>(a)];
+      const size_t sample = row + static_cast<size_t>(a);
+      float& disparity = surface->disparity[sample];
       if (disparity <= 0) continue;
-      if (surface->support[row + static_cast<size_t>(a)] < kMinSupport ||
-          geometry.SineOfParallax(grid.RectX(a), grid.RectY(b), disparity) < kMinSineOfParallax) {
+      if (surface->support[sample] < kMinSupport ||
+          !(surface->confidence[sample] >= min_confidence) ||
+          geometry.SineOfParallax(grid.RectX(a), grid.RectY(static_cast<int>(b)), disparity) <
+              kMinSineOfParallax) {
         disparity = 0;
       }
     }
-  }
+  });
 }
 
 }  // namespace colmap_seapoint

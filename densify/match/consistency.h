@@ -16,9 +16,11 @@ void RemoveInconsistent(const Gate& gate, PartialDisparity* nodes);
 // picture 2 as a better one.
 void RemoveContradictions(const Gate& gate, int num_threads, PartialDisparity* samples);
 
-// Takes out samples of the fitted surface that hardly any other agrees with, and samples whose two
-// rays meet at less than two degrees: near the epipole of a picture taken in the direction of
-// motion, and far away, depth is a guess.
-void RemoveUnsupported(const PairGeometry& geometry, PartialSurface* surface);
+// Takes out samples of the fitted surface that hardly any other agrees with, samples whose
+// confidence is less than the smallest, and samples whose two rays meet at less than two degrees:
+// near the epipole of a picture taken in the direction of motion, and far away, depth is a guess,
+// whatever the correlation says.
+void RemoveUnsure(const PairGeometry& geometry, float min_confidence, int num_threads,
+                  PartialSurface* surface);
 
 }  // namespace colmap_seapoint

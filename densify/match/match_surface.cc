@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "densify/match/confidence.h"
 #include "densify/match/consistency.h"
 #include "densify/match/propagation.h"
 #include "densify/match/refinement.h"
@@ -39,7 +40,8 @@ MatchedSurface MatchSurface(const PairPlan& plan, const RectPicture& picture1,
 
   const int radius = std::max(2, kSmoothing / options.step);  // in samples
   matched.surface = FitSurface(matched.partial, radius, kMaxSlope, num_threads);
-  RemoveUnsupported(plan.geometry, &matched.surface);
+  AssessConfidence(plan.geometry, num_threads, &matched.surface);
+  RemoveUnsure(plan.geometry, options.min_confidence, num_threads, &matched.surface);
   return matched;
 }
 

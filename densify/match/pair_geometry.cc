@@ -132,11 +132,25 @@ double PairGeometry::DisparityAtRange(double x, double y, double range) const {
   return focal * (u - std::asinh(std::sinh(u) - baseline / along_ray));
 }
 
-// The sine rule in the triangle of the two centres and the point.
+// The sine rule in the triangle of the two centres and the point. On Mercator's map the same
+// follows from how fast the range changes: by range / sin(parallax) a radian of ray 2, which is
+// drawn as large as one of ray 1, focal * cosh(u) pixels.
 double PairGeometry::SineOfParallax(double x, double y, double disparity) const {
+  if (surface == RectSurface::kMercator) {
+    return 1 / (focal * std::cosh(x / focal) * RangePerDisparity(x, disparity));
+  }
   const Eigen::Vector3d point = PointInRect(x, y, disparity);
   const double across = std::hypot(point.y(), point.z());
   return baseline * across / (point.norm() * std::hypot(point.x() - baseline, across));
+}
+
+// The derivative of the logarithm of the factor in PointInRect. On Mercator's map that is
+// cosh(u - 2 half) / (2 focal cosh(u - half) sinh(half)), half = disparity / (2 focal).
+double PairGeometry::RangePerDisparity(double x, double disparity) const {
+  if (surface == RectSurface::kPlane) return 1 / disparity;
+  const double grown = std::exp(0.5 * disparity / focal);  // e^half
+  const double at = std::exp(x / focal) / grown;           // e^(u - half)
+  return (at / grown + grown / at) / (focal * (at + 1 / at) * (grown - 1 / grown));
 }
 
 double PairGeometry::Magnification(double x) const {

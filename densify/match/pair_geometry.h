@@ -61,6 +61,8 @@ struct PairGeometry {
   double DisparityAtRange(double x, double y, double range) const;
   // Sine of the angle at which the two rays meet there.
   double SineOfParallax(double x, double y, double disparity) const;
+  // By what share of itself a point's range changes with a pixel of its disparity.
+  double RangePerDisparity(double x, double disparity) const;
   // How many rect pixels a pixel of camera 1 is drawn across, about: grows towards the epipole.
   double Magnification(double x) const;
   // Where the map magnifies, only one of so many samples of a row, and of the rows, becomes a

@@ -30,6 +30,7 @@ struct MatchOptions {
   int window_size;       // correlation window, pixels, odd
   float min_zncc;        // smallest correlation of a match
   double max_expansion;  // how far matches spread from a seed, share of picture 1's longer side
+  float min_confidence;  // of what goes into the cloud
 };
 
 // Disparities that are looked for, both inclusive, rect pixels.

@@ -39,6 +39,7 @@ class Refinement {
     result_.grid = SampleGrid(picture1.window, options.step);
     result_.disparity.assign(result_.grid.Size(), 0);
     result_.score.assign(result_.grid.Size(), -1);
+    result_.deviation.assign(result_.grid.Size(), 0);
   }
 
   int TilesX() const { return (nodes_.grid.width + own_x_ - 1) / own_x_; }
@@ -107,8 +108,9 @@ class Refinement {
     const SampleGrid& grid = result_.grid;
     tile::Pair pair = pair_;
     pair.window = window;
-    alignas(64) std::array<float, tile::kRowStride * tile::kHeight> residual, score;
-    tile::Match(pair, region, layer.surface, residual.data(), score.data());
+    alignas(64) std::array<float, tile::kRowStride * tile::kHeight> residual, score,
+        deviation;
+    tile::Match(pair, region, layer.surface, {residual.data(), score.data(), deviation.data()});
     bool any_empty = false;
     for (int b = samples.begin_b; b < samples.end_b; ++b) {
       const int y = grid.PixelY(b) - region.tile_y;
@@ -129,6 +131,7 @@ class Refinement {
         }
         result_.disparity[sample] = disparity;
         result_.score[sample] = score[at];
+        result_.deviation[sample] = deviation[at];
       }
     }
     return any_empty;

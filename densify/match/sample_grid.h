@@ -101,6 +101,7 @@ struct PartialDisparity {
   SampleGrid grid;
   std::vector<float> disparity;  // rect pixels; 0 where nothing matched
   std::vector<float> score;      // correlation, up to 1; -1 where nothing matched
+  std::vector<float> deviation;  // of the disparity, rect pixels (tile_kernels.h); samples only
   int num_failed_seeds = 0;      // around which hardly anything matched (paper 2.7)
 };
 

@@ -1,10 +1,31 @@
 #include "densify/match/surface_fit.h"
 
+#include <cmath>
+
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/parallel.h"
 #include "densify/kernels/plane_kernels.h"
 
 namespace colmap_seapoint {
+
+namespace {
+
+// From the scatter about the planes, which rows begin .. end - 1 of the deviation hold.
+void CompleteDeviation(const PartialDisparity& partial, int begin, int end, int full_support,
+                       PartialSurface* surface) {
+  const auto width = static_cast<size_t>(partial.grid.width);
+  const auto full = static_cast<float>(full_support);
+  const bool has_own = !partial.deviation.empty();
+  for (size_t i = static_cast<size_t>(begin) * width; i < static_cast<size_t>(end) * width; ++i) {
+    const float scatter = surface->deviation[i], own = has_own ? partial.deviation[i] : 0;
+    const auto support = static_cast<float>(surface->support[i]);
+    if (support > 0) {
+      surface->deviation[i] = std::sqrt(own * own + scatter * scatter) * full / support;
+    }
+  }
+}
+
+}  // namespace
 
 PartialSurface FitSurface(const PartialDisparity& partial, int radius, float max_slope,
                           int num_threads) {
@@ -16,13 +37,16 @@ PartialSurface FitSurface(const PartialDisparity& partial, int radius, float max
   surface.slope_x.resize(grid.Size());
   surface.slope_y.resize(grid.Size());
   surface.support.resize(grid.Size());
+  surface.deviation.resize(grid.Size());
   const float tolerance = max_slope * static_cast<float>(radius * grid.step);
   constexpr int kBand = 16;  // rows a task
   ParallelFor(num_threads, (grid.height + kBand - 1) / kBand, [&](int64_t band) {
     const int begin = static_cast<int>(band) * kBand, end = std::min(grid.height, begin + kBand);
     plane::FitRows({partial.disparity.data(), grid.width, grid.height}, begin, end, radius,
-                   tolerance, 1.0f / static_cast<float>(grid.step), surface.disparity.data(),
-                   surface.slope_x.data(), surface.slope_y.data(), surface.support.data());
+                   tolerance, 1.0f / static_cast<float>(grid.step),
+                   {surface.disparity.data(), surface.slope_x.data(), surface.slope_y.data(),
+                    surface.deviation.data(), surface.support.data()});
+    CompleteDeviation(partial, begin, end, (2 * radius + 1) * (2 * radius + 1), &surface);
   });
   return surface;
 }

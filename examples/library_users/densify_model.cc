@@ -59,7 +59,7 @@ int Run(const std::string& images, const std::string& folder, const std::string&
     const std::array<uint32_t, 2> seen_by = {static_cast<uint32_t>(part.image_idx1),
                                              static_cast<uint32_t>(part.image_idx2)};
     for (const cs::DensePoint& point : part.points) {
-      cloud.Add({point.xyz, point.normal, point.rgb}, seen_by.data(), 2);
+      cloud.Add({point.xyz, point.normal, point.rgb, point.confidence}, seen_by.data(), 2);
     }
   };
   const int num_threads = 2;

@@ -157,7 +157,7 @@ TEST_F(ModelScaler, PositionsOnOneLineAreLevelled) {
   {
     CloudWriter writer(folder_ / "fused.ply");
     const uint32_t seen_by[] = {0, 1};
-    writer.Add({{1, 0.5f, 2}, {0, 0, -1}, {1, 2, 3}}, seen_by, 2);
+    writer.Add({{1, 0.5f, 2}, {0, 0, -1}, {1, 2, 3}, 0.625f}, seen_by, 2);
     writer.Finish();
   }
   const CliResult result =
@@ -172,6 +172,7 @@ TEST_F(ModelScaler, PositionsOnOneLineAreLevelled) {
   const auto cloud = ReadCloud(folder_ / "out/fused.ply");
   ASSERT_EQ(cloud.size(), 1u);
   EXPECT_LT((cloud[0].xyz.cast<double>() - Truth() * Eigen::Vector3d(1, 0.5, 2)).norm(), 1e-5);
+  EXPECT_EQ(cloud[0].confidence, 0.625f);
   EXPECT_NEAR(cloud[0].normal.z(), 1, 1e-6);
   EXPECT_TRUE(ReadBytes(folder_ / "out/fused.ply.vis") == ReadBytes(folder_ / "fused.ply.vis"));
   const std::string report = ReadBytes(folder_ / "report.csv");

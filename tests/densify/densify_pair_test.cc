@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "tests/densify/pair_scene.h"
 
@@ -115,6 +116,37 @@ TEST(DensifyPairTest, SlantedPlane) {
   }
 }
 
+// The pictures that see least of the depth, and those that see a slant, in noise: the confidence is
+// the share of points within two ground sampling distances (of their own range).
+TEST(DensifyPairTest, ConfidenceIsTheShareOnTheSurface) {
+  for (const double half_baseline : {0.05, 0.08, 0.15}) {
+    PairScene scene(SlantedWorld(kDepth, 40),
+                    StandAt(TestCamera(), {-half_baseline, 0, 0}, {1, -2, 4}),
+                    StandAt(TestCamera(), {half_baseline, 0.03, 0.01}, {-2, 1, -3}));
+    std::mt19937 generator(1);
+    std::normal_distribution<double> noise(0, 5);
+    const auto add_noise = [&](GrayImage* gray) {
+      for (uint8_t& value : gray->data) {
+        value = static_cast<uint8_t>(std::clamp(value + std::lround(noise(generator)), 1l, 255l));
+      }
+    };
+    add_noise(&scene.picture1.luma);
+    add_noise(&scene.luma2);
+    PartialDensificationOptions options;
+    options.min_confidence = 0;
+    const PartialCloud cloud = DensifyPair(scene.Input(options), options, 2).cloud;
+    double predicted = 0, measured = 0;
+    for (const DensePoint& point : cloud.points) {
+      const Eigen::Vector3d xyz = point.xyz.cast<double>();
+      predicted += static_cast<double>(point.confidence);
+      measured += scene.world.Distance(xyz) < 2 * scene.Gsd((xyz - scene.view1.Center()).norm());
+    }
+    const auto count = static_cast<double>(cloud.points.size());
+    EXPECT_GT(count, 50000);
+    EXPECT_NEAR(predicted / count, measured / count, 0.1) << half_baseline;
+  }
+}
+
 // Points that lie on neither level nor on the wall, near the step: what a correlation window that
 // sees both levels leaves behind.
 double FringeShare(const PairScene& scene, const PartialCloud& cloud) {
@@ -180,7 +212,9 @@ TEST(DensifyPairTest, SameBytesWithAnyNumberOfThreads) {
     ASSERT_EQ(many.cloud.points.size(), one.cloud.points.size());
     for (size_t i = 0; i < one.cloud.points.size(); ++i) {
       const DensePoint &a = one.cloud.points[i], &b = many.cloud.points[i];
-      ASSERT_TRUE(a.xyz == b.xyz && a.normal == b.normal && a.rgb == b.rgb) << i;
+      ASSERT_TRUE(a.xyz == b.xyz && a.normal == b.normal && a.rgb == b.rgb &&
+                  a.confidence == b.confidence)
+          << i;
     }
     EXPECT_EQ(many.filled, one.filled);
     EXPECT_EQ(many.num_failed_seeds, one.num_failed_seeds);
@@ -313,6 +347,35 @@ TEST(DensifyPairTest, NewObjectInFrontOfACoveredPlaceIsReconstructed) {
   const double beside = TableCoverage(0.05, options), far = TableCoverage(-0.4, options);
   EXPECT_GT(beside, 0.75);
   EXPECT_GT(far, 0.75);
+}
+
+// A table before a background that the pictures see at little parallax (4.3 and 2.1 degrees) or, at
+// 30 times the range, at hardly any. Whatever is matched across the table's edge must not float far
+// from either, nor may the background scatter along its rays.
+TEST(DensifyPairTest, FarBackgroundLeavesNoFloaters) {
+  struct Limit {
+    double min_confidence, worst;  // own ground sampling distances; 98 where everything is written
+  };
+  for (const double far_depth : {4.0, 8.0, 30 * kDepth}) {
+    const Rectangle table = {{0, 0, kDepth}, {0.5, 0, 0}, {0, 0.4, 0}};
+    const Rectangle background = {{0, 0, far_depth}, {500, 0, 0}, {0, 500, 0}};
+    const PairScene scene = SceneOf(World({table, background}, NoiseTexture(42, 0.16, 4)));
+    PartialDensificationOptions options;
+    for (const Limit& limit : {Limit{options.min_confidence, 60}, Limit{0.9, 20}}) {
+      options.min_confidence = limit.min_confidence;
+      size_t num_on_table = 0;
+      for (const DensePoint& point :
+           DensifyPair(scene.Input(options, 600), options, 2).cloud.points) {
+        const Eigen::Vector3d xyz = point.xyz.cast<double>();
+        const double range = (xyz - scene.view1.Center()).norm(), gsd = scene.Gsd(range);
+        num_on_table += std::abs(xyz.z() - kDepth) < 2 * gsd;
+        EXPECT_LT(scene.world.Distance(xyz), limit.worst * gsd);
+        EXPECT_TRUE(far_depth < 10 || range < 1.5 * kDepth) << range;
+        EXPECT_GE(point.confidence, static_cast<float>(limit.min_confidence));
+      }
+      EXPECT_GT(num_on_table, 31500u);
+    }
+  }
 }
 
 TEST(DensifyPairTest, WrongSeedsAreNotUsed) {

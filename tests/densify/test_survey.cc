@@ -165,7 +165,8 @@ void ExpectSameClouds(const Outcome& one, const Outcome& other) {
     ASSERT_EQ(one.clouds[c].points.size(), other.clouds[c].points.size());
     for (size_t i = 0; i < one.clouds[c].points.size(); ++i) {
       const DensePoint &a = one.clouds[c].points[i], &b = other.clouds[c].points[i];
-      ASSERT_TRUE(a.xyz == b.xyz && a.normal == b.normal && a.rgb == b.rgb);
+      ASSERT_TRUE(a.xyz == b.xyz && a.normal == b.normal && a.rgb == b.rgb &&
+                  a.confidence == b.confidence);
     }
   }
 }

@@ -161,7 +161,8 @@ void RequireSame(const PairResult& a, const PairResult& b) {
   FUZZ_REQUIRE(a.cloud.points.size() == b.cloud.points.size());
   for (size_t i = 0; i < a.cloud.points.size(); ++i) {
     const DensePoint &p = a.cloud.points[i], &q = b.cloud.points[i];
-    FUZZ_REQUIRE(p.xyz == q.xyz && p.normal == q.normal && p.rgb == q.rgb);
+    FUZZ_REQUIRE(p.xyz == q.xyz && p.normal == q.normal && p.rgb == q.rgb &&
+                 p.confidence == q.confidence);
   }
 }
 

@@ -14,7 +14,7 @@
 namespace colmap_seapoint {
 namespace {
 
-constexpr size_t kPointBytes = 6 * sizeof(float) + 3;  // as CloudWriter writes them
+constexpr size_t kPointBytes = 7 * sizeof(float) + 3;  // as CloudWriter writes them
 
 }  // namespace
 
@@ -27,7 +27,7 @@ CloudRanges::CloudRanges(const std::filesystem::path& path) : path_(path) {
     const PlyHeader header = ReadPlyHeader(path.string(), &stream);
     first_byte_ = static_cast<uint64_t>(stream.tellg());
     const bool is_ours = !header.is_ascii && !header.is_big_endian && header.elements.size() == 1 &&
-                         header.elements[0].properties.size() == 9 &&
+                         header.elements[0].properties.size() == 10 &&
                          header.elements[0].MinRowBytes() == kPointBytes;
     if (is_ours) num_points_ = header.elements[0].count;
     if (!is_ours || std::filesystem::file_size(path) != first_byte_ + num_points_ * kPointBytes) {
@@ -60,6 +60,7 @@ std::vector<CloudPoint> CloudRanges::Read(uint64_t first, uint64_t count) const 
     std::memcpy(points[i].xyz.data(), record, 3 * sizeof(float));
     std::memcpy(points[i].normal.data(), record + 3 * sizeof(float), 3 * sizeof(float));
     std::memcpy(points[i].rgb.data(), record + 6 * sizeof(float), 3);
+    std::memcpy(&points[i].confidence, record + 6 * sizeof(float) + 3, sizeof(float));
   }
   return points;
 }

@@ -1,5 +1,6 @@
 #include "colmap_seapoint/io/cloud/ply.h"
 
+#include <cmath>
 #include <cstring>
 #include <string>
 
@@ -11,7 +12,7 @@ namespace {
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the files are little-endian");
 
-constexpr size_t kPointBytes = 6 * sizeof(float) + 3;
+constexpr size_t kPointBytes = 7 * sizeof(float) + 3;
 constexpr size_t kWriteBytes = 1 << 18;
 
 // The number of vertices is known at the end only. A comment of dots takes up what a shorter number
@@ -22,7 +23,8 @@ std::string CloudHeader(uint64_t num_points) {
          std::string(21 - count.size(), '.') + "\nelement vertex " + count +
          "\nproperty float x\nproperty float y\nproperty float z\n"
          "property float nx\nproperty float ny\nproperty float nz\n"
-         "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
+         "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+         "property float confidence\nend_header\n";
 }
 
 std::string VisPath(const std::filesystem::path& path) { return path.string() + ".vis"; }
@@ -38,7 +40,7 @@ CloudWriter::~CloudWriter() = default;
 
 void CloudWriter::Add(const CloudPoint& point, const uint32_t* image_idxs,
                       uint32_t num_image_idxs) {
-  if (!point.xyz.allFinite() || !point.normal.allFinite()) {
+  if (!point.xyz.allFinite() || !point.normal.allFinite() || !std::isfinite(point.confidence)) {
     ++num_skipped_;
     return;
   }
@@ -48,6 +50,7 @@ void CloudWriter::Add(const CloudPoint& point, const uint32_t* image_idxs,
   std::memcpy(record, point.xyz.data(), 3 * sizeof(float));
   std::memcpy(record + 3 * sizeof(float), point.normal.data(), 3 * sizeof(float));
   std::memcpy(record + 6 * sizeof(float), point.rgb.data(), 3);
+  std::memcpy(record + 6 * sizeof(float) + 3, &point.confidence, sizeof(float));
   vis_buffer_.resize(vis_at + (1 + num_image_idxs) * sizeof(uint32_t));
   std::memcpy(vis_buffer_.data() + vis_at, &num_image_idxs, sizeof(uint32_t));
   if (num_image_idxs > 0) {  // a null pointer may not be copied from, not even zero bytes
@@ -79,7 +82,7 @@ std::vector<CloudPoint> ReadCloud(const std::filesystem::path& path) {
   std::vector<CloudPoint> points;
   points.reserve(reader.NumPoints());
   for (CloudVertex vertex; reader.Next(&vertex);) {
-    points.push_back({vertex.xyz.cast<float>(), vertex.normal, vertex.rgb});
+    points.push_back({vertex.xyz.cast<float>(), vertex.normal, vertex.rgb, vertex.confidence});
     if (points.back().xyz.allFinite()) continue;
     throw Error(path.string(), "vertex " + std::to_string(points.size() - 1) + " is too far away",
                 "shift the cloud nearer to the origin");

@@ -1,5 +1,6 @@
-// Clouds in COLMAP's own form, binary_little_endian: float x y z nx ny nz, uchar red green blue;
-// and `<cloud>.vis`: u64 N, N x {u32 k, k x u32 image index}.
+// Clouds in COLMAP's own form, binary_little_endian: float x y z nx ny nz, uchar red green blue,
+// and our float confidence behind, which COLMAP, CloudCompare and MeshLab skip or show; and
+// `<cloud>.vis`: u64 N, N x {u32 k, k x u32 image index}.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,6 +19,7 @@ struct CloudPoint {
   Eigen::Vector3f xyz = Eigen::Vector3f::Zero();
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();
   std::array<uint8_t, 3> rgb = {0, 0, 0};
+  float confidence = 1;  // 0..1; 1 where the file has none
 };
 
 // Streams points to `path` and `path`.vis; memory does not grow with the cloud. Nothing appears

@@ -21,6 +21,7 @@ constexpr const char* kRemedy = "restore a copy, or save the cloud again";
 // Which property of the vertices is which value of a CloudVertex; -1 when it is not there.
 struct VertexLayout {
   std::array<int, 3> xyz, normal, rgb;
+  int confidence;
 };
 
 VertexLayout FindVertexLayout(const std::string& path, const PlyElement& vertex) {
@@ -39,6 +40,7 @@ VertexLayout FindVertexLayout(const std::string& path, const PlyElement& vertex)
       throw Error(path, std::string("its vertices have no property ") + kXyz[i], kRemedy);
     }
   }
+  layout.confidence = vertex.Find("confidence");
   return layout;
 }
 
@@ -62,6 +64,9 @@ void SetVertex(const PlyElement& vertex, const VertexLayout& layout,
       const auto property = static_cast<size_t>(layout.rgb[k]);
       point->rgb[k] = ColorByte(values[property], vertex.properties[property].type);
     }
+  }
+  if (layout.confidence >= 0) {
+    point->confidence = static_cast<float>(values[static_cast<size_t>(layout.confidence)]);
   }
 }
 

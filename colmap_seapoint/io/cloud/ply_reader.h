@@ -13,13 +13,15 @@ struct CloudVertex {
   Eigen::Vector3d xyz = Eigen::Vector3d::Zero();
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();
   std::array<uint8_t, 3> rgb = {0, 0, 0};
+  float confidence = 1;
 };
 
 // Streams the vertices of a PLY, ASCII or binary of either byte order, with x y z of any type;
-// normals and colours where present (else zero). Properties stand in any order; other properties,
-// lists and elements are skipped. Memory: a buffer of 1 MB. About 50 ns a point (binary).
-// Throws Error naming file, finding and remedy: missing, not a PLY, an unknown format or type, no
-// element 'vertex', no x y z, truncated, a word that is no number, a position that is not finite.
+// normals and colours where present (else zero), confidence where present (else 1). Properties
+// stand in any order; other properties, lists and elements are skipped. Memory: a buffer of 1 MB.
+// About 50 ns a point (binary). Throws Error naming file, finding and remedy: missing, not a PLY,
+// an unknown format or type, no element 'vertex', no x y z, truncated, a word that is no number, a
+// position that is not finite.
 class CloudReader {
  public:
   // Reads the header and skips what stands before the vertices.

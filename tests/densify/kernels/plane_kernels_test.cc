@@ -16,6 +16,7 @@ namespace {
 
 struct Fit {
   double value = 0, slope_x = 0, slope_y = 0;  // slopes a sample
+  double scatter = 0;
   int support = 0;
 };
 
@@ -27,6 +28,7 @@ Fit LeastSquares(const std::vector<float>& map, int width, int height, int a, in
   };
   Fit fit;
   const float center = at(a, b);
+  double squares = 0;
   if (!(center > 0)) return fit;
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -36,16 +38,20 @@ Fit LeastSquares(const std::vector<float>& map, int width, int height, int a, in
       const Eigen::Vector3d row(1, x - a, y - b);
       normal += row * row.transpose();
       right += row * static_cast<double>(at(x, y));
+      squares += std::pow(static_cast<double>(at(x, y)), 2);
+      fit.scatter += std::pow(static_cast<double>(at(x, y) - center), 2);
       ++fit.support;
     }
   }
   fit.value = center;
+  fit.scatter = std::sqrt(fit.scatter / fit.support);
   const Eigen::FullPivLU<Eigen::Matrix3d> lu(normal);
   if (fit.support < 6 || !lu.isInvertible()) return fit;
   const Eigen::Vector3d plane = lu.solve(right);
   fit.value = plane[0];
   fit.slope_x = plane[1];
   fit.slope_y = plane[2];
+  fit.scatter = std::sqrt(std::max(0.0, squares - plane.dot(right)) / fit.support);
   return fit;
 }
 
@@ -80,10 +86,11 @@ TEST(PlaneKernelsTest, EqualsLeastSquares) {
     const int end = trial % 3 == 0 ? height : height - (height > 3);
     const float scale = trial % 2 ? 0.25f : 1;
     ForEachVectorTarget([&] {
-      std::vector<float> value(map.size(), -7), slope_x = value, slope_y = value;
+      std::vector<float> value(map.size(), -7), slope_x = value, slope_y = value, scatter = value;
       std::vector<uint8_t> support(map.size(), 200);
-      plane::FitRows({map.data(), width, height}, begin, end, radius, tolerance, scale,
-                     value.data(), slope_x.data(), slope_y.data(), support.data());
+      plane::FitRows(
+          {map.data(), width, height}, begin, end, radius, tolerance, scale,
+          {value.data(), slope_x.data(), slope_y.data(), scatter.data(), support.data()});
       for (int b = 0; b < height; ++b) {
         for (int a = 0; a < width; ++a) {
           const size_t i =
@@ -96,6 +103,7 @@ TEST(PlaneKernelsTest, EqualsLeastSquares) {
           const Fit fit = LeastSquares(map, width, height, a, b, radius, tolerance);
           ASSERT_EQ(support[i], fit.support) << a << " " << b;
           ASSERT_NEAR(value[i], fit.value, 5e-5) << a << " " << b;
+          ASSERT_NEAR(scatter[i], fit.scatter, 2e-3) << a << " " << b;
           ASSERT_NEAR(slope_x[i], scale * fit.slope_x, 5e-5) << a << " " << b;
           ASSERT_NEAR(slope_y[i], scale * fit.slope_y, 5e-5) << a << " " << b;
           if (fit.support < 6 && fit.support > 0) {
@@ -129,7 +137,34 @@ TEST(SurfaceFitTest, SameWithAnyThreadsAndVectors) {
       EXPECT_EQ(other.slope_x, surface.slope_x);
       EXPECT_EQ(other.slope_y, surface.slope_y);
       EXPECT_EQ(other.support, surface.support);
+      EXPECT_EQ(other.deviation, surface.deviation);
     });
+  }
+}
+
+// Samples with a deviation of 0.1 on a plane, a hole in its middle; then with scatter, too.
+TEST(SurfaceFitTest, TheDeviationGrowsWithScatterAndLackOfSupport) {
+  PartialDisparity partial = RandomPartial(1);
+  std::mt19937 generator(5);
+  for (const float scatter : {0.0f, 0.3f}) {
+    std::normal_distribution<float> noise(0, scatter);
+    for (float& d : partial.disparity) d = 50 + (scatter > 0 ? noise(generator) : 0);
+    const auto width = static_cast<size_t>(partial.grid.width);
+    const size_t hole = 30 * width + 60;
+    partial.disparity[hole] = 0;
+    partial.deviation.assign(partial.grid.Size(), 0.1f);
+    const PartialSurface surface = FitSurface(partial, 2, 0.75f, 2);
+    const float all_agree = std::hypot(0.1f, scatter);
+    EXPECT_EQ(surface.deviation[hole], 0);
+    if (scatter == 0) {
+      EXPECT_FLOAT_EQ(surface.deviation[40 * width + 60], all_agree);
+      EXPECT_FLOAT_EQ(surface.deviation[hole + 1], all_agree * 25 / 24);
+      EXPECT_FLOAT_EQ(surface.deviation[0], all_agree * 25 / 9);
+      continue;
+    }
+    double sum = 0;
+    for (size_t a = 10; a < 120; ++a) sum += static_cast<double>(surface.deviation[50 * width + a]);
+    EXPECT_NEAR(sum / 110, all_agree, 0.15 * all_agree);  // less the three freedoms of a plane
   }
 }
 

@@ -24,7 +24,7 @@ constexpr int kOutside = -1000;  // a pixel that is not there
 class Oracle {
  public:
   struct Answer {
-    float residual = 0, score = 0;
+    float residual = 0, score = 0, deviation = 0;
     bool whole = true;  // the windows behind the answer have all their pixels
   };
 
@@ -50,6 +50,9 @@ class Oracle {
       const float slope = 0.5f * (tile::PredictedAt(prediction_, x + 1, y) -
                                   tile::PredictedAt(prediction_, x - 1, y));
       answer.residual = top * (1 - slope);
+      const float doubt =
+          2 * std::max(0.0f, 1 - score[k]) / static_cast<float>(pair_.window * pair_.window);
+      answer.deviation = std::sqrt(doubt / -curvature) * (1 - slope);
       answer.whole = Whole(x, y, shift - 1) && Whole(x, y, shift) && Whole(x, y, shift + 1);
       if (!(curvature < 0)) answer = Answer();
     }
@@ -205,16 +208,17 @@ struct Case {
   }
 };
 
-// Residuals and scores of the windows asked for, row by row.
+// Residuals, scores and deviations of the windows asked for, row by row.
 std::vector<float> MatchAll(const Case& c) {
-  alignas(64) std::array<float, tile::kRowStride * tile::kWideHeight> residual, score;
-  tile::Match(c.pair, c.region, c.prediction, residual.data(), score.data());
+  alignas(64) std::array<float, tile::kRowStride * tile::kWideHeight> residual, score, deviation;
+  tile::Match(c.pair, c.region, c.prediction, {residual.data(), score.data(), deviation.data()});
   std::vector<float> all;
   size_t row = 0;
   for (int y = c.region.first_row; y < c.region.height; y += c.region.row_step, ++row) {
     for (size_t x = 0; x < static_cast<size_t>(c.region.width); ++x) {
       all.push_back(residual[row * tile::kRowStride + x]);
       all.push_back(score[row * tile::kRowStride + x]);
+      all.push_back(deviation[row * tile::kRowStride + x]);
     }
   }
   return all;
@@ -232,10 +236,13 @@ TEST(TileKernelsTest, EqualsTheDefinitionWithAnyVectors) {
     ForEachVectorTarget([&] { ASSERT_EQ(MatchAll(c), all); });
     size_t next = 0;
     for (int y = c.region.first_row; y < c.region.height; y += c.region.row_step) {
-      for (int x = 0; x < c.region.width; ++x, next += 2) {
+      for (int x = 0; x < c.region.width; ++x, next += 3) {
         const Oracle::Answer answer = oracle.At(c.region.x0 + x, c.region.y0 + y);
         ASSERT_NEAR(all[next + 1], answer.score, 1e-5) << x << " " << y;
         ASSERT_NEAR(all[next], answer.residual, 1e-5) << x << " " << y;
+        // Where the peak is nearly flat, roundings of its scores count.
+        ASSERT_NEAR(all[next + 2], answer.deviation, 1e-5 + 1e-3 * answer.deviation)
+            << x << " " << y;
         ++(answer.score > 0 ? num_found : num_not);
         // Along a plane the corners tell whether a window lies in upright pictures.
         if (!bumpy) {
@@ -258,11 +265,57 @@ TEST(TileKernelsTest, LargestWindowsDoNotOverflow) {
   for (auto& row : c.prediction.disparity) row.fill(0);
   ForEachVectorTarget([&] {
     const std::vector<float> all = MatchAll(c);
-    for (size_t i = 0; i < all.size(); i += 2) {
+    for (size_t i = 0; i < all.size(); i += 3) {
       ASSERT_FLOAT_EQ(all[i + 1], 1);
       ASSERT_NEAR(all[i], 0, 0.01);
+      ASSERT_LT(all[i + 2], 1e-3);
     }
   });
+}
+
+double Median(std::vector<float> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return static_cast<double>(*middle);
+}
+
+// Noise of its own in each pixel of both pictures, on a texture that is known: the deviation
+// follows it, and is how far the residuals scatter about the true shift, 0, to a factor of two:
+// textures are no parabolas.
+TEST(TileKernelsTest, TheDeviationIsWhatResidualsScatter) {
+  double before = 0;
+  for (const double noise : {4.0, 8.0, 16.0}) {
+    std::mt19937 generator(5);
+    std::normal_distribution<double> normal(0, noise);
+    Case c(9, false, false, &generator);
+    const GrayImage texture = RandomPicture(160, 90, false, &generator);
+    const auto noisy = [&] {
+      GrayImage picture = texture;
+      for (uint8_t& value : picture.data) {
+        value = static_cast<uint8_t>(std::clamp(value + std::lround(normal(generator)), 1l, 255l));
+      }
+      return picture;
+    };
+    c.gray1 = noisy();
+    c.gray2 = noisy();
+    c.pair.column_shift = c.pair.row_shift = 0;
+    c.region = {20, 20, 10, 10, 64, 32, 0, 1};
+    for (auto& row : c.prediction.disparity) row.fill(0);
+    const std::vector<float> all = MatchAll(c);
+    std::vector<float> residuals, deviations;
+    for (size_t i = 0; i < all.size(); i += 3) {
+      residuals.push_back(std::abs(all[i]));
+      deviations.push_back(all[i + 2]);
+    }
+    const double scatter = Median(residuals) / 0.6745;  // of a normal distribution
+    const double deviation = Median(deviations);
+    EXPECT_GT(deviation, 0.5 * scatter) << noise;
+    EXPECT_LT(deviation, 2 * scatter) << noise;
+    if (before > 0) {
+      EXPECT_NEAR(deviation / before, 2, 0.1);
+    }
+    before = deviation;
+  }
 }
 
 // The parts of picture 2 that it is asked for lie wholly beyond it, on any side.

@@ -44,7 +44,7 @@ Samples Sample(const World& world, const Viewpoint& view1, const Viewpoint& view
       Eigen::Vector3d normal = (*right - *point).cross(*below - *point).normalized();
       if (normal.dot(ray(0, 0)) > 0) normal = -normal;
       samples.points.push_back(
-          {point->cast<float>(), (normal_sign * normal).cast<float>(), {0, 0, 0}});
+          {point->cast<float>(), (normal_sign * normal).cast<float>(), {0, 0, 0}, 1});
     }
   }
   return samples;

@@ -195,8 +195,22 @@ TEST(ConsistencyTest, UnsupportedSurfaceGoes) {
   surface.grid = SampleGrid({0, 0, 10, 1}, 1);
   surface.disparity.assign(10, 33);
   for (uint8_t n = 0; n < 10; ++n) surface.support.push_back(n);
-  RemoveUnsupported(GeometryOfFocal(100), &surface);
+  surface.confidence.assign(10, 0.8f);
+  RemoveUnsure(GeometryOfFocal(100), 0.8f, 2, &surface);
   for (size_t n = 0; n < 10; ++n) EXPECT_EQ(surface.disparity[n], n < 6 ? 0 : 33);
+}
+
+TEST(ConsistencyTest, UnsureSurfaceGoes) {
+  PartialSurface surface;
+  surface.grid = SampleGrid({0, 0, 10, 1}, 1);
+  surface.disparity.assign(10, 33);
+  surface.support.assign(10, 25);
+  for (int n = 0; n < 10; ++n) surface.confidence.push_back(0.1f * static_cast<float>(n));
+  PartialSurface all = surface;
+  RemoveUnsure(GeometryOfFocal(100), 0.45f, 2, &surface);
+  for (size_t n = 0; n < 10; ++n) EXPECT_EQ(surface.disparity[n], n < 5 ? 0 : 33);
+  RemoveUnsure(GeometryOfFocal(100), 0, 2, &all);
+  for (size_t n = 0; n < 10; ++n) EXPECT_EQ(all.disparity[n], 33);
 }
 
 TEST(ConsistencyTest, SameWithAnyNumberOfThreads) {
@@ -226,7 +240,8 @@ TEST(ConsistencyTest, RaysThatHardlyMeetMeasureNothing) {
   surface.disparity.assign(surface.grid.Size(), 20);
   surface.support.assign(surface.grid.Size(), 25);
   const double focal = 500;
-  RemoveUnsupported(GeometryOfFocal(focal), &surface);
+  surface.confidence.assign(surface.grid.Size(), 1);
+  RemoveUnsure(GeometryOfFocal(focal), 0.5f, 2, &surface);
   for (int a = 0; a < surface.grid.width; ++a) {
     // Two pinholes a baseline of 1 apart, the point in the plane y = 0.
     const double x = surface.grid.RectX(a), depth = focal / 20;

@@ -111,6 +111,13 @@ TEST(PairGeometryTest, PointsLandOnEqualRowsAndComeBack) {
                         .dot((seen.point - motion.view2.Center()).normalized()));
       ASSERT_NEAR(geometry.SineOfParallax(rect1->x(), rect1->y(), disparity), std::sin(parallax),
                   1e-6);
+      const auto range_at = [&](double d) {
+        return geometry.PointInRect(rect1->x(), rect1->y(), d).norm();
+      };
+      const double h = 1e-4 * disparity;
+      const double change = (range_at(disparity - h) - range_at(disparity + h)) / (2 * h);
+      ASSERT_NEAR(geometry.RangePerDisparity(rect1->x(), disparity) * range_at(disparity) / change,
+                  1, 1e-6);
     }
   }
 }

@@ -8,7 +8,7 @@
 namespace colmap_seapoint {
 namespace {
 
-constexpr MatchOptions kOptions = {1, 9, 0.7f, 0.1};
+constexpr MatchOptions kOptions = {1, 9, 0.7f, 0.1, 0};
 
 const PairScene& FlatScene() {
   const Camera camera = MakeCamera(CameraModel::kPinhole, 200, 240, 180);

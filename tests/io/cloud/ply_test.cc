@@ -19,6 +19,7 @@ CloudPoint MakePoint(int i) {
   point.xyz = Eigen::Vector3f(0.1f * static_cast<float>(i), -1.f / 3.f, 1e6f);
   point.normal = Eigen::Vector3f(0, 0, -1);
   point.rgb = {static_cast<uint8_t>(i), 2, 255};
+  point.confidence = 1 / (1 + static_cast<float>(i));
   return point;
 }
 
@@ -40,6 +41,7 @@ TEST(CloudWriter, RoundTrip) {
       EXPECT_EQ(point.xyz, MakePoint(i).xyz);
       EXPECT_EQ(point.normal, MakePoint(i).normal);
       EXPECT_EQ(point.rgb, MakePoint(i).rgb);
+      EXPECT_EQ(point.confidence, MakePoint(i).confidence);
     }
   }
 }
@@ -49,8 +51,10 @@ TEST(CloudWriter, WritesColmapsForm) {
   WriteCloud(dir / "fused.ply", 12);
   const std::string ply = ReadBytes(dir / "fused.ply");
   EXPECT_NE(ply.find("\nelement vertex 12\nproperty float x\n"), std::string::npos);
+  EXPECT_NE(ply.find("\nproperty uchar blue\nproperty float confidence\nend_header\n"),
+            std::string::npos);
   const std::string end = "end_header\n";
-  EXPECT_EQ(ply.size(), ply.find(end) + end.size() + 12 * 27);
+  EXPECT_EQ(ply.size(), ply.find(end) + end.size() + 12 * 31);
 
   const std::string vis = ReadBytes(dir / "fused.ply.vis");
   ASSERT_EQ(vis.size(), 8u + 12 * 12);

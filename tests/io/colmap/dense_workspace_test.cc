@@ -88,7 +88,7 @@ TEST(CloudRanges, ReadsAnyPart) {
     CloudWriter writer(dir / "fused.ply");
     for (uint8_t i = 0; i < 100; ++i) {
       const auto x = static_cast<float>(i);
-      writer.Add({{x, 2 * x, -x}, {0, 0, 1}, {i, 1, 2}}, nullptr, 0);
+      writer.Add({{x, 2 * x, -x}, {0, 0, 1}, {i, 1, 2}, x / 128}, nullptr, 0);
     }
     writer.Finish();
   }
@@ -103,6 +103,7 @@ TEST(CloudRanges, ReadsAnyPart) {
       EXPECT_EQ(part[i].xyz, all[first + i].xyz);
       EXPECT_EQ(part[i].normal, all[first + i].normal);
       EXPECT_EQ(part[i].rgb, all[first + i].rgb);
+      EXPECT_EQ(part[i].confidence, static_cast<float>(first + i) / 128);
     }
   }
   const std::string bytes = ReadBytes(dir / "fused.ply");
