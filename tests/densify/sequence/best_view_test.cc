@@ -77,7 +77,7 @@ TEST(BestViewTest, ThePairThatIsNearerMeasuresThePlace) {
       EXPECT_EQ(with_nearer[cell], 1);
       ++num_left;
     }
-    if (!well_inside(near1, -80) || !well_inside(near2, -80)) {
+    if (!well_inside(near1, -80) && !well_inside(near2, -80)) {
       EXPECT_EQ(with_nearer[cell], alone[cell]);
     }
   }
