@@ -140,8 +140,10 @@ double PairGeometry::SineOfParallax(double x, double y, double disparity) const 
     return 1 / (focal * std::cosh(x / focal) * RangePerDisparity(x, disparity));
   }
   const Eigen::Vector3d point = PointInRect(x, y, disparity);
-  const double across = std::hypot(point.y(), point.z());
-  return baseline * across / (point.norm() * std::hypot(point.x() - baseline, across));
+  const double across_squared = point.y() * point.y() + point.z() * point.z();
+  const double along = point.x() - baseline;  // from camera 2
+  return baseline *
+         std::sqrt(across_squared / (point.squaredNorm() * (along * along + across_squared)));
 }
 
 // The derivative of the logarithm of the factor in PointInRect. On Mercator's map that is

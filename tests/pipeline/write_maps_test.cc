@@ -83,7 +83,8 @@ class MapWriterTest : public StripSurvey {
         const Eigen::Vector3d point(kStripRange * ray->x(), kStripRange * ray->y(), kStripRange);
         part.points.push_back({(image.cam_from_world.Inverse() * point).cast<float>(),
                                Eigen::Vector3f(0, 0, -1),
-                               {1, 2, 3}});
+                               {1, 2, 3},
+                               1});
       }
     }
     return part;
@@ -96,7 +97,7 @@ class MapWriterTest : public StripSurvey {
     for (const PartialCloud& part : parts) {
       maps->AddPair(part, cloud.NumPoints());
       for (const DensePoint& point : part.points) {
-        cloud.Add({point.xyz, point.normal, point.rgb}, seen_by, 2);
+        cloud.Add({point.xyz, point.normal, point.rgb, point.confidence}, seen_by, 2);
       }
     }
     cloud.Finish();

@@ -1,5 +1,5 @@
 // Clouds in COLMAP's own form, binary_little_endian: float x y z nx ny nz, uchar red green blue,
-// and our float confidence behind, which COLMAP, CloudCompare and MeshLab skip or show; and
+// and our float confidence behind, which COLMAP skips; and
 // `<cloud>.vis`: u64 N, N x {u32 k, k x u32 image index}.
 #pragma once
 
