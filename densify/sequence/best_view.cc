@@ -60,8 +60,30 @@ double LeastUncertainty(const std::vector<Viewer>& viewers, const Eigen::Vector3
   return least;
 }
 
-size_t IndexIn(const CellGrid& grid, int a, int b) {
-  return static_cast<size_t>(b) * static_cast<size_t>(grid.width) + static_cast<size_t>(a);
+// Looked up once for blocks of cells: calls visit with the place that the middle of a block shows
+// and the indices of its cells. Blocks whose range is not predicted are left out.
+template <typename Visit>
+void ForEachBlock(const View& view, const CellGrid& grid,
+                  const std::vector<double>& predicted_range, const Visit& visit) {
+  const Rigid3d world_from_cam = view.cam_from_world.Inverse();
+  const auto index_of = [&](int a, int b) {
+    return static_cast<size_t>(b) * static_cast<size_t>(grid.width) + static_cast<size_t>(a);
+  };
+  std::vector<size_t> cells;
+  for (int b0 = 0; b0 < grid.height; b0 += kBlock) {
+    for (int a0 = 0; a0 < grid.width; a0 += kBlock) {
+      const int b1 = std::min(grid.height, b0 + kBlock), a1 = std::min(grid.width, a0 + kBlock);
+      const size_t middle = index_of((a0 + a1) / 2, (b0 + b1) / 2);
+      if (predicted_range[middle] <= 0) continue;
+      const auto place = PointAt(view, world_from_cam, grid, middle, predicted_range[middle]);
+      if (!place) continue;
+      cells.clear();
+      for (int b = b0; b < b1; ++b) {
+        for (int a = a0; a < a1; ++a) cells.push_back(index_of(a, b));
+      }
+      visit(*place, cells);
+    }
+  }
 }
 
 }  // namespace
@@ -77,39 +99,26 @@ std::vector<double> AdmissibleUncertainty(const View& view, const std::vector<Vi
                                           const std::vector<double>& predicted_range) {
   std::vector<Viewer> viewers(1, Viewer(view));
   for (const View& other : others) viewers.emplace_back(other);
-  const Rigid3d world_from_cam = view.cam_from_world.Inverse();
   std::vector<double> admissible(grid.Size(), kInfinite);
-  for (int b0 = 0; b0 < grid.height; b0 += kBlock) {
-    for (int a0 = 0; a0 < grid.width; a0 += kBlock) {
-      const int b1 = std::min(grid.height, b0 + kBlock), a1 = std::min(grid.width, a0 + kBlock);
-      const size_t middle = IndexIn(grid, (a0 + a1) / 2, (b0 + b1) / 2);
-      if (predicted_range[middle] <= 0) continue;
-      const auto place = PointAt(view, world_from_cam, grid, middle, predicted_range[middle]);
-      if (!place) continue;
-      const double uncertainty = kAdmitted * LeastUncertainty(viewers, *place);
-      for (int b = b0; b < b1; ++b) {
-        std::fill_n(admissible.begin() + static_cast<std::ptrdiff_t>(IndexIn(grid, a0, b)), a1 - a0,
-                    uncertainty);
-      }
-    }
-  }
+  ForEachBlock(view, grid, predicted_range,
+               [&](const Eigen::Vector3d& place, const std::vector<size_t>& cells) {
+                 const double uncertainty = kAdmitted * LeastUncertainty(viewers, place);
+                 for (const size_t cell : cells) admissible[cell] = uncertainty;
+               });
   return admissible;
 }
 
 void LeaveToBetterPairs(const View& view, const View& partner,
                         const std::vector<double>& predicted_range,
                         const std::vector<double>& admissible, KnownCells* known) {
-  const CellGrid& grid = known->grid;
-  const Rigid3d world_from_cam = view.cam_from_world.Inverse();
-  known->closed.resize(grid.Size(), 0);
-  for (size_t cell = 0; cell < grid.Size(); ++cell) {
-    if (predicted_range[cell] <= 0) continue;
-    const auto place = PointAt(view, world_from_cam, grid, cell, predicted_range[cell]);
-    if (!place) continue;
-    // Where the pair measures nothing, at the rims, there is nothing to be left.
-    const double uncertainty = RangeUncertainty(view, partner, *place);
-    if (uncertainty < kInfinite && uncertainty > admissible[cell]) known->closed[cell] = 1;
-  }
+  known->closed.resize(known->grid.Size(), 0);
+  ForEachBlock(view, known->grid, predicted_range,
+               [&](const Eigen::Vector3d& place, const std::vector<size_t>& cells) {
+                 // Where the pair measures nothing, at the rims, there is nothing to be left.
+                 const double uncertainty = RangeUncertainty(view, partner, place);
+                 if (uncertainty == kInfinite || uncertainty <= admissible[cells[0]]) return;
+                 for (const size_t cell : cells) known->closed[cell] = 1;
+               });
 }
 
 }  // namespace colmap_seapoint

@@ -134,7 +134,8 @@ TEST(HolesTest, WhatCannotBeMeasured) {
   EXPECT_THROW(FindHoles({}, kSpacing), Error);
   EXPECT_THROW(FindHoles(Field({}).Cloud(), 1e-6), Error);
   EXPECT_THROW(MedianSpacing({}), Error);
-  EXPECT_THROW(MedianSpacing({{{1, 2, 3}, {}, {}}, {{1, 2, 3}, {}, {}}}), Error);
+  const Eigen::Vector3f place(1, 2, 3), none(0, 0, 0);
+  EXPECT_THROW(MedianSpacing({{place, none, {}}, {place, none, {}}}), Error);
 }
 
 TEST(HolesTest, TextListsTheLargest) {
