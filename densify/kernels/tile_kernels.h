@@ -60,11 +60,11 @@ float PredictedAt(const Prediction& prediction, int x, int y);
 // Zero-mean normalised cross-correlation of windows at the predicted disparity plus -kReach ..
 // kReach, the window of picture 2 following the prediction's slope (slanted support). residual
 // (true less predicted disparity), score, and deviation (of the residual): a row asked for every
-// kRowStride floats; where there is no clear maximum, all 0. Exact integers up to the last division.
-// If what the two windows differ in were noise of its own in each pixel, then 1 - score would be its
-// share of the power, and residuals of n pixels would scatter by sqrt(2 (1 - score) / (n curvature)),
-// curvature being that of the peak. That is the deviation; what it must be multiplied by where
-// differences are not of that kind, is for the caller to know.
+// kRowStride floats; where there is no clear maximum, all 0. Exact integers up to the last
+// division. If what the two windows differ in were noise of its own in each pixel, then 1 - score
+// would be its share of the power, and residuals of n pixels would scatter by sqrt(2 (1 - score) /
+// (n curvature)), curvature being that of the peak. That is the deviation; what it must be
+// multiplied by where differences are not of that kind, is for the caller to know.
 void Match(const Pair& pair, const Region& region, const Prediction& prediction,
            const Results& results);
 

@@ -108,8 +108,7 @@ class Refinement {
     const SampleGrid& grid = result_.grid;
     tile::Pair pair = pair_;
     pair.window = window;
-    alignas(64) std::array<float, tile::kRowStride * tile::kHeight> residual, score,
-        deviation;
+    alignas(64) std::array<float, tile::kRowStride * tile::kHeight> residual, score, deviation;
     tile::Match(pair, region, layer.surface, {residual.data(), score.data(), deviation.data()});
     bool any_empty = false;
     for (int b = samples.begin_b; b < samples.end_b; ++b) {
