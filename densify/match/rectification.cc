@@ -51,6 +51,9 @@ RectWindow WindowOfPicture(const PairGeometry& geometry, bool second) {
   RectBounds bounds;
   for (int j = 0; j <= kSamples; ++j) {
     for (int i = 0; i <= kSamples; ++i) {
+      // A plane holds the picture within what it makes of its rim.
+      const bool on_rim = i == 0 || j == 0 || i == kSamples || j == kSamples;
+      if (!is_mercator && !on_rim) continue;
       const Eigen::Vector2d pixel(static_cast<double>(camera.width) * i / kSamples,
                                   static_cast<double>(camera.height) * j / kSamples);
       const auto rect = second ? geometry.RectFromPixel2(pixel) : geometry.RectFromPixel1(pixel);
