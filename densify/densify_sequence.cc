@@ -23,9 +23,18 @@ namespace {
 constexpr size_t kMaxCandidates = 12;
 constexpr int kMaxPartners = 3;
 
+// Where a last round comes back for the rest, points must be surer than that at first, so that
+// another pair may measure better what one is unsure of.
+constexpr double kSureAtFirst = 0.6;
+
 // What is covered is known only where all earlier views count.
 bool Completes(const SequenceContext& context) {
   return context.options.completion && context.redundancy == Redundancy::kAll;
+}
+
+double FirstConfidence(const SequenceContext& context) {
+  const double least = context.options.min_confidence;
+  return Completes(context) ? std::max(least, kSureAtFirst) : least;
 }
 
 // Where influence areas put the overlap of a picture with the first one of the pair before (paper
@@ -116,7 +125,9 @@ bool DensifyNewAreas(const SequenceContext& context, int first, int second, Sequ
     if (second > first && ahead < context.track.Length())
       context.pictures->Prefetch(context.track.ImageIdx(ahead));
   }
-  PairTask task{first, second, "sequence", AssessOverlap(context, *memory, first), {}};
+  PairTask task{first,      second,
+                "sequence", AssessOverlap(context, *memory, first),
+                {},         FirstConfidence(context)};
   LeaveToBetterPairs(context, &task);
   task.seeds = FormSeeds(context, first, second, LabelsThatCount(context, task.overlap));
   PairOutcome pair = RunPair(context, task);
@@ -229,8 +240,8 @@ void Drop(int position, std::vector<CompletionCandidate>* candidates) {
 
 // All matches and triangulated points of the pair are seeds, and the rim of what is covered.
 PairTask TaskOf(const SequenceContext& context, int position, const CompletionTarget& target,
-                const CompletionView& seen) {
-  PairTask task{position, target.partner, "completion", {}, {}};
+                const CompletionView& seen, double min_confidence) {
+  PairTask task{position, target.partner, "completion", {}, {}, min_confidence};
   task.overlap.rate = seen.coverage.CoveredShare();
   task.overlap.known = {seen.coverage.grid, target.closed, {}, {}};
   task.seeds = FormSeeds(context, position, target.partner, {});
@@ -257,7 +268,10 @@ void CompletePicture(const SequenceContext& context, int position, CompletionRou
     const CompletionTarget target = SelectCompletionPartner(view, seen, candidates);
     if (target.partner < 0) return;
     Drop(target.partner, &candidates);
-    const PairTask task = TaskOf(context, position, target, seen);
+    const PairTask task =
+        TaskOf(context, position, target, seen,
+               round == CompletionRound::kBestViews ? FirstConfidence(context)
+                                                    : context.options.min_confidence);
     const PairOutcome pair = RunPair(context, task);
     Deliver(context, task, pair, memory, report);
     if (pair.result.failure.empty()) {

@@ -23,7 +23,7 @@ struct PartialDensificationOptions {
   int step = 0;                    // pixels between samples; 0 = 0.75 million a picture (ours)
   int window_size = 9;             // of the correlation, pixels, odd (ours)
   double min_zncc = 0.7;           // smallest correlation of a match (ours)
-  double min_confidence = 0.6;     // of a point: less is not written (ours)
+  double min_confidence = 0.3;     // of a point: less is not written (ours)
   double influence_radius = 0.03;  // of a SeaPoint, share of the longer side (paper 2.5)
   double max_expansion = 0.1;      // of matches from a seed, share of the longer side (paper 2.6)
   double min_mean_motion = 0.02;   // mean norm of a pair's vectors, likewise (paper 2.6)

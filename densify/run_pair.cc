@@ -131,7 +131,9 @@ PairOutcome RunPair(const SequenceContext& context, const PairTask& task) {
     row.skipped = pair.result.failure = "a picture cannot be read";
     return pair;
   }
-  pair.result = DensifyPair(InputOf(context, task, pictures), context.options, context.num_threads);
+  PartialDensificationOptions options = context.options;
+  options.min_confidence = task.min_confidence;
+  pair.result = DensifyPair(InputOf(context, task, pictures), options, context.num_threads);
   row.overlap = task.overlap.rate;
   row.skipped = pair.result.failure;
   row.num_seeds = pair.result.num_seeds;

@@ -17,6 +17,7 @@ struct PairTask {
   std::string pass;   // "sequence" or "completion"
   PairOverlap overlap;
   std::vector<PixelPair> seeds;
+  double min_confidence;  // of its points
 };
 
 struct PairOutcome {

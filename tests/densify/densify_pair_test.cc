@@ -361,7 +361,7 @@ TEST(DensifyPairTest, FarBackgroundLeavesNoFloaters) {
     const Rectangle background = {{0, 0, far_depth}, {500, 0, 0}, {0, 500, 0}};
     const PairScene scene = SceneOf(World({table, background}, NoiseTexture(42, 0.16, 4)));
     PartialDensificationOptions options;
-    for (const Limit& limit : {Limit{options.min_confidence, 60}, Limit{0.9, 20}}) {
+    for (const Limit& limit : {Limit{0.6, 60}, Limit{0.9, 20}}) {
       options.min_confidence = limit.min_confidence;
       size_t num_on_table = 0;
       for (const DensePoint& point :
