@@ -93,12 +93,19 @@ void Remember(const SequenceContext& context, const PairTask& task, std::vector<
   memory->previous.filled = std::move(filled);
 }
 
+// The partners that a picture may have, best first.
+std::vector<int> PartnersOf(const SequenceContext& context, int position) {
+  std::vector<int> partners = BestPartners(context.track, context.covisibility, position);
+  partners.resize(std::min(partners.size(), kMaxCandidates));
+  return partners;
+}
+
 // What a picture may measure of each cell before better pairs have had their turn (ours).
 std::vector<double> AdmissibleIn(const SequenceContext& context, int position,
                                  const std::vector<double>& predicted_range) {
   std::vector<View> others;
-  for (const int partner : BestPartners(context.track, context.covisibility, position)) {
-    if (others.size() < kMaxCandidates) others.push_back(context.track.ViewOf(partner));
+  for (const int partner : PartnersOf(context, position)) {
+    others.push_back(context.track.ViewOf(partner));
   }
   return AdmissibleUncertainty(context.track.ViewOf(position), others, context.Cells(position),
                                predicted_range);
@@ -122,8 +129,9 @@ bool DensifyNewAreas(const SequenceContext& context, int first, int second, Sequ
                      SequenceReport* report) {
   // Decoded while this pair is densified: most often they are the next pair.
   for (const int ahead : {second + 1, second + 2}) {
-    if (second > first && ahead < context.track.Length())
+    if (second > first && ahead < context.track.Length()) {
       context.pictures->Prefetch(context.track.ImageIdx(ahead));
+    }
   }
   PairTask task{first,      second,
                 "sequence", AssessOverlap(context, *memory, first),
@@ -222,10 +230,8 @@ void DensifyByCoverage(const SequenceContext& context, const std::function<void(
 
 std::vector<CompletionCandidate> CandidatesOf(const SequenceContext& context, int position,
                                               const SequenceMemory& memory) {
-  std::vector<int> partners = BestPartners(context.track, context.covisibility, position);
-  partners.resize(std::min(partners.size(), kMaxCandidates));
   std::vector<CompletionCandidate> candidates;
-  for (const int partner : partners) {
+  for (const int partner : PartnersOf(context, position)) {
     if (memory.tried_pairs.count(std::minmax(position, partner)) > 0) continue;
     candidates.push_back({partner, context.track.ViewOf(partner)});
   }

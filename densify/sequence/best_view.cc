@@ -10,7 +10,7 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-// Chords between unit rays: of 2 degrees, below which they measure nothing, and of 20 degrees,
+// Chords between unit rays: of 2 degrees, below which they measure nothing, and of 11.5 degrees,
 // above which what a pair gains in depth it loses in likeness.
 constexpr double kMinChord = 0.035, kFullChord = 0.2;
 constexpr double kAdmitted = 1.5;  // times the least uncertainty
@@ -22,14 +22,15 @@ struct Sight {
   double gsd;           // model units a pixel
 };
 
+// Does not outlive its view.
 class Viewer {
  public:
   explicit Viewer(const View& view)
-      : view_(view),
+      : view_(&view),
         center_(view.cam_from_world.OriginInSource()),
         focal_(view.camera.MeanFocal()) {}
 
-  bool Sees(const Eigen::Vector3d& place) const { return SeesWell(view_, place); }
+  bool Sees(const Eigen::Vector3d& place) const { return SeesWell(*view_, place); }
   Sight At(const Eigen::Vector3d& place) const {
     const Eigen::Vector3d ray = place - center_;
     const double range = ray.norm();
@@ -37,7 +38,7 @@ class Viewer {
   }
 
  private:
-  View view_;
+  const View* view_;
   Eigen::Vector3d center_;
   double focal_;
 };

@@ -13,8 +13,9 @@
 namespace colmap_seapoint {
 
 // How far the distance of a place is off, model units, when the two views disagree by a pixel of
-// the coarser one: its ground sampling distance over their parallax, which counts up to 20 degrees.
-// Infinite where either does not see the place well, or their rays meet at less than two degrees.
+// the coarser one: its ground sampling distance over their parallax, which counts up to 11.5
+// degrees. Infinite where either does not see the place well, or their rays meet at less than two
+// degrees.
 double RangeUncertainty(const View& view1, const View& view2, const Eigen::Vector3d& place);
 
 // For each cell of `view` the largest uncertainty with which one of its pairs may measure it before
