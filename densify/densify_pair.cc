@@ -54,7 +54,7 @@ PairResult DensifyPair(const PairInput& input, const PartialDensificationOptions
 
   const Timer propagation_timer;
   MatchedSurface matched = MatchSurface(plan, rectified.picture1, rectified.picture2,
-                                        rectified.gate, matching, num_threads);
+                                        rectified.gate, input.further, matching, num_threads);
   const double propagation_seconds = propagation_timer.WallSeconds();
 
   PairResult result = Reproject(input, plan, rectified, std::move(matched), num_threads);

@@ -5,6 +5,7 @@
 #include "colmap_seapoint/base/timer.h"
 #include "densify/overlap/seeds.h"
 #include "densify/pair_debug.h"
+#include "densify/sequence/partners.h"
 
 namespace colmap_seapoint {
 
@@ -27,14 +28,27 @@ PairReport NewRow(const SequenceContext& context, const PairTask& task) {
   return row;
 }
 
-// Either may be null: it cannot be read.
+// Pictures besides the pair's own that say what they see of its surface.
+constexpr size_t kMaxFurther = 2;
+
+// The pair's own may be null: they cannot be read.
 struct PairPictures {
   std::shared_ptr<const Picture> picture1, picture2;
+  std::vector<std::pair<int, std::shared_ptr<const Picture>>> further;  // position
 };
 
 PairPictures PicturesOf(const SequenceContext& context, const PairTask& task) {
-  return {context.pictures->Get(context.track.ImageIdx(task.first)),
-          context.pictures->Get(context.track.ImageIdx(task.second))};
+  PairPictures pictures{context.pictures->Get(context.track.ImageIdx(task.first)),
+                        context.pictures->Get(context.track.ImageIdx(task.second)),
+                        {}};
+  for (const int partner : BestPartners(context.track, context.covisibility, task.first)) {
+    if (pictures.further.size() == kMaxFurther) break;
+    if (partner == task.second) continue;
+    if (auto picture = context.pictures->Get(context.track.ImageIdx(partner))) {
+      pictures.further.emplace_back(partner, std::move(picture));
+    }
+  }
+  return pictures;
 }
 
 PairInput InputOf(const SequenceContext& context, const PairTask& task,
@@ -44,6 +58,9 @@ PairInput InputOf(const SequenceContext& context, const PairTask& task,
   input.view2 = context.track.ViewOf(task.second);
   input.picture1 = pictures.picture1.get();
   input.luma2 = &pictures.picture2->luma;
+  for (const auto& [position, picture] : pictures.further) {
+    input.further.push_back({context.track.ViewOf(position), &picture->luma});
+  }
   input.seeds = task.seeds;
   input.known = task.overlap.known;
   input.mode = context.mode;

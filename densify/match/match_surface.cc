@@ -26,7 +26,8 @@ int MaxGenerations(const PairPlan& plan) {
 
 MatchedSurface MatchSurface(const PairPlan& plan, const RectPicture& picture1,
                             const RectPicture& picture2, const Gate& gate,
-                            const MatchOptions& options, int num_threads) {
+                            const std::vector<FurtherView>& further, const MatchOptions& options,
+                            int num_threads) {
   PartialDisparity nodes =
       Propagate(picture1, picture2, gate, plan.seeds,
                 {kGrowthWindow, kGrowthZncc * options.min_zncc, MaxGenerations(plan)}, num_threads);
@@ -39,7 +40,12 @@ MatchedSurface MatchSurface(const PairPlan& plan, const RectPicture& picture1,
   RemoveContradictions(gate, num_threads, &matched.partial);
 
   const int radius = std::max(2, kSmoothing / options.step);  // in samples
-  matched.surface = FitSurface(matched.partial, radius, kMaxSlope, num_threads);
+  matched.surface = FitRoughSurface(matched.partial, radius, kMaxSlope, num_threads);
+  if (!further.empty()) {
+    MeasureInFurtherViews(plan.geometry, picture1, matched.surface, further, num_threads,
+                          &matched.partial);
+    matched.surface = FitRoughSurface(matched.partial, radius, kMaxSlope, num_threads);
+  }
   AssessConfidence(plan.geometry, num_threads, &matched.surface);
   RemoveUnsure(plan.geometry, options.min_confidence, num_threads, &matched.surface);
   return matched;

@@ -3,6 +3,7 @@
 // and planes are fitted through them (ours). After each step, what contradicts itself is taken out.
 #pragma once
 
+#include "densify/match/further_views.h"
 #include "densify/match/plan_pair.h"
 #include "densify/match/surface_fit.h"
 
@@ -17,6 +18,7 @@ struct MatchedSurface {
 // The same result for any number of threads.
 MatchedSurface MatchSurface(const PairPlan& plan, const RectPicture& picture1,
                             const RectPicture& picture2, const Gate& gate,
-                            const MatchOptions& options, int num_threads);
+                            const std::vector<FurtherView>& further, const MatchOptions& options,
+                            int num_threads);
 
 }  // namespace colmap_seapoint

@@ -9,6 +9,7 @@
 #include "colmap_seapoint/base/picture.h"
 #include "densify/match/cell_grid.h"
 #include "densify/match/densification_mode.h"
+#include "densify/match/further_views.h"
 #include "densify/match/rectification.h"
 #include "densify/match/sample_grid.h"
 #include "densify/match/view.h"
@@ -20,6 +21,7 @@ struct PairInput {
   View view1, view2;
   const Picture* picture1 = nullptr;
   const GrayImage* luma2 = nullptr;
+  std::vector<FurtherView> further;  // others that show the same; maybe none
   std::vector<PixelPair> seeds;
   KnownCells known;  // of picture 1; in kComplete it only tells which part of the result is new
   DensificationMode mode = DensificationMode::kPartial;

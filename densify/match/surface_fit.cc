@@ -1,5 +1,6 @@
 #include "densify/match/surface_fit.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "colmap_seapoint/base/error.h"
@@ -9,6 +10,9 @@
 namespace colmap_seapoint {
 
 namespace {
+
+// Deviations of the wide plane against the narrow one's that noise alone does not bring about.
+constexpr float kRough = 1.6f, kRoughLeast = 0.05f;  // times; plus pixels
 
 // From the scatter about the planes, which rows begin .. end - 1 of the deviation hold.
 void CompleteDeviation(const PartialDisparity& partial, int begin, int end, int full_support,
@@ -48,6 +52,23 @@ PartialSurface FitSurface(const PartialDisparity& partial, int radius, float max
                     surface.deviation.data(), surface.support.data()});
     CompleteDeviation(partial, begin, end, (2 * radius + 1) * (2 * radius + 1), &surface);
   });
+  return surface;
+}
+
+PartialSurface FitRoughSurface(const PartialDisparity& partial, int radius, float max_slope,
+                               int num_threads) {
+  PartialSurface surface = FitSurface(partial, radius, max_slope, num_threads);
+  const PartialSurface narrow =
+      FitSurface(partial, std::max(1, radius / 2), max_slope, num_threads);
+  for (size_t i = 0; i < surface.disparity.size(); ++i) {
+    if (static_cast<float>(narrow.support[i]) < plane::kMinSupport ||
+        surface.deviation[i] <= kRough * narrow.deviation[i] + kRoughLeast) {
+      continue;
+    }
+    surface.disparity[i] = narrow.disparity[i];
+    surface.slope_x[i] = narrow.slope_x[i];
+    surface.slope_y[i] = narrow.slope_y[i];
+  }
   return surface;
 }
 

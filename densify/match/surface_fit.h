@@ -28,4 +28,10 @@ struct PartialSurface {
 PartialSurface FitSurface(const PartialDisparity& partial, int radius, float max_slope,
                           int num_threads);
 
+// The same at two scales: where the samples scatter clearly more about the plane of `radius` than
+// about that of half of it, the surface is not plane so far, and the smaller one's counts. The
+// deviation stays that of the larger one.
+PartialSurface FitRoughSurface(const PartialDisparity& partial, int radius, float max_slope,
+                               int num_threads);
+
 }  // namespace colmap_seapoint

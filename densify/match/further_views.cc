@@ -1,0 +1,279 @@
+#include "densify/match/further_views.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "colmap_seapoint/base/parallel.h"
+#include "densify/kernels/patch_kernels.h"
+
+namespace colmap_seapoint {
+
+namespace {
+
+constexpr int kBlock = 8;         // pixels: what a map is linear in, at least
+constexpr double kReach = 1;      // pixels of disparity around its own, likewise
+constexpr double kDelta = 4;      // pixels between the places that a map's slopes are taken from
+constexpr double kMaxScale = 2;   // of the further picture against picture 1, either way
+constexpr double kMaxMove = 1.5;  // pixels of picture 1 that the gradient can tell
+constexpr double kNear = 0.15;    // pixels: after so small a move nobody looks again
+constexpr double kLeastNoise = 0.03;                 // pixels: no picture measures better
+constexpr double kAgrees = 0.7, kContradicts = 0.5;  // correlation
+constexpr double kMinFacing = 0.3;  // cosine of the angle between normal and ray, of a witness
+constexpr double kMaxAside = 1.5;   // its angle to the nearer of the pair's rays, of their parallax
+
+double AngleBetween(const Eigen::Vector3d& unit1, const Eigen::Vector3d& unit2) {
+  return 2 * std::asin(std::min(1.0, 0.5 * (unit1 - unit2).norm()));
+}
+
+struct Sample {
+  double x, y;  // rect pixels, picture 1
+  double disparity, slope_x, slope_y;
+};
+
+// What a further picture says of a sample.
+struct Opinion {
+  double disparity = 0;  // 0: none
+  double deviation = 0;  // of it, rect pixels
+  bool contradicts = false;
+};
+
+// How far a patch must move, in units of `step` (template pixels), to look most like the other.
+struct Move {
+  double units = 0, deviation = 0, score = -1;
+};
+
+// nullopt where one of the two, or the gradient along the step, has no texture.
+std::optional<Move> FindMove(const patch::Sums& s, const Eigen::Vector2d& step) {
+  constexpr double n = patch::kPixels;
+  const auto centered = [](int32_t product, double a, double b) { return product - a * b / n; };
+  const double spread = centered(s.gray_gray, s.gray, s.gray);
+  const double other_spread = centered(s.other_other, s.other, s.other);
+  const double common = centered(s.gray_other, s.gray, s.other);
+  if (!(spread > n && other_spread > n && common > 0)) return std::nullopt;
+  // The sums' differences are twice the gradient.
+  const Eigen::Vector2d half = step / 2;
+  const Eigen::Vector2d with_gray(centered(s.gray_across, s.gray, s.across),
+                                  centered(s.gray_down, s.gray, s.down));
+  const Eigen::Vector2d with_other(centered(s.across_other, s.across, s.other),
+                                   centered(s.down_other, s.down, s.other));
+  Eigen::Matrix2d gradient;
+  gradient << centered(s.across_across, s.across, s.across),
+      centered(s.across_down, s.across, s.down), centered(s.across_down, s.across, s.down),
+      centered(s.down_down, s.down, s.down);
+  const double power = half.dot(gradient * half);
+  if (!(power > 1e-3 * spread * step.squaredNorm())) return std::nullopt;
+  Move move;
+  move.score = common / std::sqrt(spread * other_spread);
+  move.units = half.dot(with_gray - common / other_spread * with_other) / power;
+  // As that of tile::Match: what the two differ in is noise of its own in each pixel.
+  move.deviation = std::sqrt(2 * std::max(0.0, 1 - move.score) * spread / (n * power));
+  return move;
+}
+
+// Where a further picture shows what lies around a sample, linear in place and disparity.
+struct LocalMap {
+  double x = 0, y = 0, disparity = -1;     // rect pixels; around these
+  Eigen::Vector2d at, across, down, pace;  // pixels; a pixel of x, y, disparity
+  bool is_shown = false;                   // at a scale that can be compared
+  bool is_witness = false;                 // whose disagreement counts
+};
+
+class FurtherPicture {
+ public:
+  FurtherPicture(const PairGeometry& geometry, const FurtherView& further)
+      : geometry_(geometry),
+        camera_(further.view.camera),
+        luma_(*further.luma),
+        cam_from_rect_(further.view.cam_from_world.rotation.toRotationMatrix() *
+                       geometry.world_from_rect),
+        origin_(further.view.cam_from_world * geometry.center1) {}
+
+  // `map` is lent from sample to sample of a block and made anew where it does not hold.
+  Opinion Judge(const patch::Template& of, const patch::Sums& template_sums, const Sample& sample,
+                LocalMap* map) const {
+    if (!(std::abs(sample.disparity - map->disparity) <= kReach)) *map = MapAround(sample);
+    if (!map->is_shown) return {};
+    const Eigen::Vector2d here = map->at + (sample.x - map->x) * map->across +
+                                 (sample.y - map->y) * map->down +
+                                 (sample.disparity - map->disparity) * map->pace;
+    Eigen::Matrix2d axes;  // from template pixels, along the surface
+    axes << map->across + sample.slope_x * map->pace, map->down + sample.slope_y * map->pace;
+    const double scale = std::abs(axes.determinant());
+    if (!(scale > 1 / (kMaxScale * kMaxScale) && scale < kMaxScale * kMaxScale)) return {};
+    return Compare(of, template_sums, here, axes, *map, sample.disparity);
+  }
+
+ private:
+  std::optional<Eigen::Vector2d> Show(double x, double y, double disparity) const {
+    if (!(disparity > 0)) return std::nullopt;
+    return camera_.ImgFromCam(cam_from_rect_ * geometry_.PointInRect(x, y, disparity) + origin_);
+  }
+
+  LocalMap MapAround(const Sample& sample) const {
+    LocalMap map;
+    map.x = sample.x;
+    map.y = sample.y;
+    map.disparity = sample.disparity;
+    const auto at = Show(sample.x, sample.y, sample.disparity);
+    if (!at || !camera_.InImage(*at)) return map;
+    const auto across = Show(sample.x + kDelta, sample.y, sample.disparity);
+    const auto down = Show(sample.x, sample.y + kDelta, sample.disparity);
+    const auto nearer = Show(sample.x, sample.y, sample.disparity + 1);
+    if (!across || !down || !nearer) return map;
+    map.at = *at;
+    map.across = (*across - *at) / kDelta;
+    map.down = (*down - *at) / kDelta;
+    map.pace = *nearer - *at;
+    map.is_shown = true;
+    map.is_witness = IsWitness(sample);
+    return map;
+  }
+
+  bool IsWitness(const Sample& sample) const {
+    const Eigen::Vector3d point = geometry_.PointInRect(sample.x, sample.y, sample.disparity);
+    const Eigen::Vector3d normal = geometry_.NormalInRect(sample.x, sample.y, sample.disparity,
+                                                          sample.slope_x, sample.slope_y);
+    const Eigen::Vector3d ray1 = point.normalized();
+    const Eigen::Vector3d ray2 = (point - Eigen::Vector3d(geometry_.baseline, 0, 0)).normalized();
+    const Eigen::Vector3d ray = (point + cam_from_rect_.transpose() * origin_).normalized();
+    return -normal.dot(ray) > kMinFacing &&
+           std::min(AngleBetween(ray, ray1), AngleBetween(ray, ray2)) <
+               kMaxAside * AngleBetween(ray1, ray2);
+  }
+
+  Opinion Compare(const patch::Template& of, const patch::Sums& template_sums,
+                  const Eigen::Vector2d& here, const Eigen::Matrix2d& axes, const LocalMap& map,
+                  double predicted) const {
+    const Eigen::Vector2d step = axes.inverse() * map.pace;
+    const double pixels_a_unit = step.norm();
+    double units = 0;
+    std::optional<Move> move;
+    for (int look = 0; look < 2; ++look) {
+      patch::Sums sums = template_sums;
+      if (!SumAt(here + units * map.pace, axes, of, &sums)) return {};
+      move = FindMove(sums, step);
+      if (!move) return {0, 0, map.is_witness};
+      units += move->units;
+      if (!(std::abs(units) * pixels_a_unit < kMaxMove)) return {0, 0, map.is_witness};
+      if (std::abs(move->units) * pixels_a_unit < kNear) break;
+    }
+    if (move->score < kAgrees) return {0, 0, map.is_witness && move->score < kContradicts};
+    return {predicted + units, std::hypot(move->deviation, kLeastNoise / pixels_a_unit), false};
+  }
+
+  // False where the patch, placed there, reaches beyond the picture.
+  bool SumAt(const Eigen::Vector2d& at, const Eigen::Matrix2d& axes, const patch::Template& of,
+             patch::Sums* sums) const {
+    constexpr double kFar = patch::kBefore + 1;  // template pixels, with what bilinear weights need
+    const double reach_x = kFar * (std::abs(axes(0, 0)) + std::abs(axes(0, 1))) + 1;
+    const double reach_y = kFar * (std::abs(axes(1, 0)) + std::abs(axes(1, 1))) + 1;
+    if (!(at.x() > reach_x && at.y() > reach_y && at.x() < luma_.width - reach_x &&
+          at.y() < luma_.height - reach_y)) {
+      return false;
+    }
+    const auto fixed = [](double value) { return static_cast<int32_t>(std::lround(value)); };
+    const Eigen::Matrix2d scaled = 65536 * axes;
+    patch::SumOther(
+        of, luma_,
+        {fixed(65536 * (at.x() - 0.5)), fixed(65536 * (at.y() - 0.5)), fixed(scaled(0, 0)),
+         fixed(scaled(1, 0)), fixed(scaled(0, 1)), fixed(scaled(1, 1))},
+        sums);
+    return true;
+  }
+
+  const PairGeometry& geometry_;
+  const Camera& camera_;
+  const GrayImage& luma_;
+  const Eigen::Matrix3d cam_from_rect_;
+  const Eigen::Vector3d origin_;  // of the rect frame, in the camera's
+};
+
+// Samples of a block, one after the other.
+class BlockJudge {
+ public:
+  BlockJudge(const RectPicture& picture1, const PartialSurface& surface,
+             const std::vector<FurtherPicture>& pictures, PartialDisparity* measured)
+      : picture1_(picture1),
+        surface_(surface),
+        pictures_(pictures),
+        measured_(measured),
+        maps_(pictures.size()) {}
+
+  void Run(int begin_a, int begin_b, int end_a, int end_b) {
+    std::fill(maps_.begin(), maps_.end(), LocalMap());
+    const SampleGrid& grid = surface_.grid;
+    for (int b = begin_b; b < end_b; ++b) {
+      for (int a = begin_a; a < end_a; ++a) {
+        const size_t idx =
+            static_cast<size_t>(b) * static_cast<size_t>(grid.width) + static_cast<size_t>(a);
+        if (surface_.disparity[idx] <= 0 ||
+            !patch::MakeTemplate(picture1_.gray, grid.PixelX(a), grid.PixelY(b), &template_)) {
+          continue;
+        }
+        Judge({grid.RectX(a), grid.RectY(b), surface_.disparity[idx], surface_.slope_x[idx],
+               surface_.slope_y[idx]},
+              idx);
+      }
+    }
+  }
+
+ private:
+  void Judge(const Sample& sample, size_t idx) {
+    const patch::Sums sums = patch::SumTemplate(template_);
+    const double own = std::hypot(static_cast<double>(measured_->deviation[idx]), kLeastNoise);
+    double weight = 1 / (own * own), sum = weight * static_cast<double>(measured_->disparity[idx]);
+    int num_agree = 0, num_contradict = 0;
+    for (size_t i = 0; i < pictures_.size(); ++i) {
+      const Opinion opinion = pictures_[i].Judge(template_, sums, sample, &maps_[i]);
+      num_contradict += opinion.contradicts;
+      if (opinion.disparity <= 0) continue;
+      ++num_agree;
+      const double weight_here = 1 / (opinion.deviation * opinion.deviation);
+      weight += weight_here;
+      sum += weight_here * opinion.disparity;
+    }
+    if (num_contradict > num_agree) {
+      measured_->disparity[idx] = 0;
+      measured_->score[idx] = -1;
+    } else if (num_agree > 0) {
+      measured_->disparity[idx] = static_cast<float>(sum / weight);
+      measured_->deviation[idx] = static_cast<float>(1 / std::sqrt(weight));
+    }
+  }
+
+  const RectPicture& picture1_;
+  const PartialSurface& surface_;
+  const std::vector<FurtherPicture>& pictures_;
+  PartialDisparity* const measured_;
+  std::vector<LocalMap> maps_;
+  patch::Template template_;
+};
+
+}  // namespace
+
+void MeasureInFurtherViews(const PairGeometry& geometry, const RectPicture& picture1,
+                           const PartialSurface& surface, const std::vector<FurtherView>& further,
+                           int num_threads, PartialDisparity* measured) {
+  std::vector<FurtherPicture> pictures;
+  for (const FurtherView& view : further) {
+    // Places in larger pictures do not fit 16 bits and a fraction.
+    if (std::max(view.luma->width, view.luma->height) < 32768) {
+      pictures.emplace_back(geometry, view);
+    }
+  }
+  if (pictures.empty()) return;
+  const SampleGrid& grid = surface.grid;
+  const int block = std::max(1, kBlock / grid.step);  // samples
+  ParallelFor(num_threads, (grid.height + block - 1) / block, [&](int64_t band) {
+    BlockJudge judge(picture1, surface, pictures, measured);
+    const int b = static_cast<int>(band) * block;
+    for (int a = 0; a < grid.width; a += block) {
+      judge.Run(a, b, std::min(grid.width, a + block), std::min(grid.height, b + block));
+    }
+  });
+}
+
+}  // namespace colmap_seapoint
