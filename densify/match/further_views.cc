@@ -33,6 +33,10 @@ struct Sample {
   double disparity, slope_x, slope_y;
 };
 
+// Of a contradicted sample's deviation: so unsure, it is left to other pairs as long as there are
+// any that may measure it.
+constexpr float kDoubt = 4;
+
 // What a further picture says of a sample.
 struct Opinion {
   double disparity = 0;  // 0: none
@@ -236,8 +240,7 @@ class BlockJudge {
       sum += weight_here * opinion.disparity;
     }
     if (num_contradict > num_agree) {
-      measured_->disparity[idx] = 0;
-      measured_->score[idx] = -1;
+      measured_->deviation[idx] *= kDoubt;
     } else if (num_agree > 0) {
       measured_->disparity[idx] = static_cast<float>(sum / weight);
       measured_->deviation[idx] = static_cast<float>(1 / std::sqrt(weight));
