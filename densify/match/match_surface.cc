@@ -40,12 +40,11 @@ MatchedSurface MatchSurface(const PairPlan& plan, const RectPicture& picture1,
   RemoveContradictions(gate, num_threads, &matched.partial);
 
   const int radius = std::max(2, kSmoothing / options.step);  // in samples
-  matched.surface = FitRoughSurface(matched.partial, radius, kMaxSlope, num_threads);
   if (!further.empty()) {
-    MeasureInFurtherViews(plan.geometry, picture1, matched.surface, further, num_threads,
-                          &matched.partial);
-    matched.surface = FitRoughSurface(matched.partial, radius, kMaxSlope, num_threads);
+    const PartialSurface first = FitSurface(matched.partial, radius, kMaxSlope, num_threads);
+    MeasureInFurtherViews(plan.geometry, picture1, first, further, num_threads, &matched.partial);
   }
+  matched.surface = FitRoughSurface(matched.partial, radius, kMaxSlope, num_threads);
   AssessConfidence(plan.geometry, num_threads, &matched.surface);
   RemoveUnsure(plan.geometry, options.min_confidence, num_threads, &matched.surface);
   return matched;
