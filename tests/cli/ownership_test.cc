@@ -28,14 +28,32 @@ class Ownership : public testing::Test {
   }
 
   std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+  // Few SeaPoints and coarse clouds.
   Arguments Reconstruct(const std::string& workspace) const {
-    return {"automatic_reconstructor", "--image_path",  Path("images"), "--workspace_path",
-            Path(workspace),           "--colmap_path", FAKE_COLMAP};
+    return {"automatic_reconstructor",
+            "--image_path",
+            Path("images"),
+            "--workspace_path",
+            Path(workspace),
+            "--colmap_path",
+            FAKE_COLMAP,
+            "--SeaPointExtraction.min_num_features",
+            "300",
+            "--SeaPointExtraction.max_num_features",
+            "400",
+            "--PartialDensification.step",
+            "4"};
   }
   Arguments Densify(const std::string& output, const Arguments& more = {}) const {
-    Arguments arguments = {"partial_densifier", "--image_path",  Path("images"),
-                           "--input_path",      Path("model"),   "--output_path",
-                           Path(output),        "--num_threads", "1"};
+    Arguments arguments = {"partial_densifier",
+                           "--image_path",
+                           Path("images"),
+                           "--input_path",
+                           Path("model"),
+                           "--output_path",
+                           Path(output),
+                           "--PartialDensification.step",
+                           "4"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
