@@ -13,7 +13,6 @@
 #include "colmap_seapoint/io/outputs/replaceable_file.h"
 #include "colmap_seapoint/io/outputs/same_file.h"
 #include "colmap_seapoint/pipeline/earlier_outputs.h"
-#include "colmap_seapoint/pipeline/output_names.h"
 #include "colmap_seapoint/pipeline/output_paths.h"
 #include "colmap_seapoint/report/comparison_report.h"
 #include "colmap_seapoint/report/difference_files.h"

@@ -20,7 +20,6 @@
 #include "colmap_seapoint/pictures/picture_scale.h"
 #include "colmap_seapoint/pictures/read_rig.h"
 #include "colmap_seapoint/pipeline/earlier_outputs.h"
-#include "colmap_seapoint/pipeline/output_names.h"
 #include "colmap_seapoint/pipeline/output_paths.h"
 #include "colmap_seapoint/pipeline/write_maps.h"
 #include "colmap_seapoint/report/debug_figures.h"

@@ -12,7 +12,7 @@
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/colmap/dense_workspace.h"
 #include "colmap_seapoint/io/image/image_file.h"
-#include "colmap_seapoint/pipeline/output_names.h"
+#include "colmap_seapoint/pipeline/output_paths.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -128,7 +128,7 @@ void AdoptEarlierWorkspace(OutputFolder* workspace) {
 
 void AdoptEarlierOutputs(OutputFolder* folder) {
   const fs::path& root = folder->Path();
-  if (!folder->Files().empty()) return;
+  if (folder->IsOurs("run.json") || folder->IsOurs("input_to_reference.ply")) return;
   const Json report = ReadJson(root / "run.json");
   const std::string command = report.is_object() ? report.value("command", std::string()) : "";
   if (command == "partial_densifier") {

@@ -4,6 +4,9 @@
 #include <variant>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/colmap/dense_workspace.h"
+#include "colmap_seapoint/io/files/model_units.h"
 #include "colmap_seapoint/io/outputs/replaceable_file.h"
 #include "colmap_seapoint/io/outputs/same_file.h"
 
@@ -21,6 +24,34 @@ std::string PathOf(const OptionInfo& option) {
 }
 
 }  // namespace
+
+using Names = std::vector<std::string>;
+
+Names CloudNames() { return {"fused.ply", "fused.ply.vis", "pairs.csv", kUnitsFile, "run.json"}; }
+
+Names DenseMapNames(const Names& pictures) {
+  Names names = {"stereo/fusion.cfg", "stereo/patch-match.cfg"};
+  for (const char* file : {"cameras.bin", "images.bin", "points3D.bin"}) {
+    names.push_back("sparse/" + std::string(file));
+  }
+  for (const std::string& picture : pictures) {
+    for (const auto& path : {UndistortedImagePath("", picture), DepthMapPath("", picture),
+                             NormalMapPath("", picture)}) {
+      names.push_back(path.generic_string());
+    }
+  }
+  return names;
+}
+
+Names ScaledModelNames() {
+  Names names = ModelFileNames();
+  names.insert(names.end(), {"scale.json", kUnitsFile, "run.json"});
+  return names;
+}
+
+Names DifferenceNames() {
+  return {"input_to_reference.ply", "reference_to_input.ply", "differences.png"};
+}
 
 void CheckOutputPaths(const OptionTable& table) {
   for (const OptionInfo& output : table.Options()) {

@@ -1,11 +1,23 @@
-// No output may be an input: what is to be read would be written over.
+// The files that each command writes into its output folder: what it claims before it writes. And
+// that no output is an input: what is to be read would be written over.
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "colmap_seapoint/base/options.h"
 
 namespace colmap_seapoint {
+
+// partial_densifier.
+std::vector<std::string> CloudNames();
+// The same with write_maps: what comes on top for these pictures.
+std::vector<std::string> DenseMapNames(const std::vector<std::string>& pictures);
+// model_scaler, without the cloud, which keeps its own name.
+std::vector<std::string> ScaledModelNames();
+// cloud_comparer, into --difference_path.
+std::vector<std::string> DifferenceNames();
 
 // Throws UsageError, naming both options, when the path of one that is an output leads to the same
 // file or folder as that of another one, also through links (same_file.h).

@@ -13,7 +13,6 @@
 #include "colmap_seapoint/io/outputs/same_file.h"
 #include "colmap_seapoint/pictures/read_rig.h"
 #include "colmap_seapoint/pipeline/earlier_outputs.h"
-#include "colmap_seapoint/pipeline/output_names.h"
 #include "colmap_seapoint/pipeline/output_paths.h"
 #include "colmap_seapoint/report/scale_report.h"
 

@@ -61,6 +61,12 @@ std::set<std::string> ReadNames(const fs::path& folder) {
   return names;
 }
 
+void WriteNames(const fs::path& folder, const std::set<std::string>& names) {
+  std::string text = std::string(kFirstLine) + "\n";
+  for (const std::string& name : names) text += Line(name) + "\n";
+  WriteTextFile(folder / kNamesFile, text);
+}
+
 bool StartsWith(const std::string& name, const std::string& beginning) {
   return name.compare(0, beginning.size(), beginning) == 0;
 }
@@ -134,15 +140,6 @@ bool OutputFolder::IsOurs(const std::string& name) const {
   return below != names_.end() && StartsWith(*below, name + "/");
 }
 
-std::vector<fs::path> OutputFolder::Files() const {
-  std::vector<fs::path> files;
-  std::error_code ignored;
-  for (const std::string& name : names_) {
-    if (fs::is_regular_file(path_ / name, ignored)) files.push_back(path_ / name);
-  }
-  return files;
-}
-
 // A name outlives its file no longer than the run: whoever takes it next may be somebody else.
 void OutputFolder::ForgetGone() {
   std::set<std::string> kept;
@@ -151,13 +148,7 @@ void OutputFolder::ForgetGone() {
   }
   if (kept.size() == names_.size()) return;
   names_ = kept;
-  WriteNames();
-}
-
-void OutputFolder::WriteNames() const {
-  std::string text = std::string(kFirstLine) + "\n";
-  for (const std::string& name : names_) text += Line(name) + "\n";
-  WriteTextFile(path_ / kNamesFile, text);
+  WriteNames(path_, names_);
 }
 
 void OutputFolder::Adopt(const std::vector<std::string>& names) {
@@ -178,7 +169,7 @@ void OutputFolder::CheckFree(const std::vector<std::string>& names) const {
 void OutputFolder::Claim(const std::vector<std::string>& names) {
   CheckFree(names);
   for (const std::string& name : names) has_news_ |= names_.insert(name).second;
-  if (has_news_) WriteNames();
+  if (has_news_) WriteNames(path_, names_);
   has_news_ = false;
 }
 
@@ -196,7 +187,7 @@ void OutputFolder::Remove(const std::string& name) {
   for (const std::string& ours : removed) {
     if (!Exists(path_ / ours)) names_.erase(ours);  // a folder may hold what others put there
   }
-  if (!removed.empty()) WriteNames();
+  if (!removed.empty()) WriteNames(path_, names_);
 }
 
 std::vector<fs::path> FilesOfOurs(const fs::path& folder) {

@@ -33,8 +33,6 @@ class OutputFolder {
 
   // Whether the file or folder, or a file below it, is ours.
   bool IsOurs(const std::string& name) const;
-  // Our files that are there, by name. Folders are not among them.
-  std::vector<std::filesystem::path> Files() const;
 
   // What the caller knows to be ours by other signs: earlier versions kept no names. Names of what
   // is not there are left out. It is written down with the next Claim().
@@ -50,7 +48,6 @@ class OutputFolder {
 
  private:
   void ForgetGone();
-  void WriteNames() const;
 
   std::filesystem::path path_;
   std::string remedy_;
@@ -60,7 +57,7 @@ class OutputFolder {
   bool has_news_ = false;  // names that are not written down yet
 };
 
-// The files that a run which is over left in the folder.
+// Our files that a run which is over left in the folder, by name. Folders are not among them.
 std::vector<std::filesystem::path> FilesOfOurs(const std::filesystem::path& folder);
 
 // Removes all our files from it.
