@@ -7,6 +7,7 @@
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/colmap/dense_workspace.h"
 #include "colmap_seapoint/io/files/model_units.h"
+#include "colmap_seapoint/io/files/temporary_file.h"
 #include "colmap_seapoint/io/outputs/replaceable_file.h"
 #include "colmap_seapoint/io/outputs/same_file.h"
 
@@ -67,6 +68,7 @@ void CheckOutputPaths(const OptionTable& table) {
 }
 
 void CheckRunReport(const std::filesystem::path& path) {
+  RemoveLeftovers(path.has_parent_path() ? path.parent_path() : ".");
   CheckReplaceable(path, "\"command\": \"", "move it away, or choose another --database_path");
 }
 

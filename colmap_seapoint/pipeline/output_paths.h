@@ -33,6 +33,7 @@ void CheckOutputPaths(Options options) {
 }
 
 // Throws Error when a file that is no run.json of ours has the name of the one beside a database.
+// What killed runs left beside it is removed.
 void CheckRunReport(const std::filesystem::path& path);
 
 }  // namespace colmap_seapoint
