@@ -59,7 +59,7 @@ bool OutputsAreWhole(const std::filesystem::path& workspace, const Json& outputs
 
 WorkspaceState::WorkspaceState(const std::filesystem::path& workspace,
                                std::vector<std::string> outputs)
-    : folder_(workspace, "--workspace_path") {
+    : folder_(workspace, "--workspace_path", IfBusy::kWaitForChildren) {
   AdoptEarlierWorkspace(&folder_);
   outputs.emplace_back(kState);
   folder_.Claim(outputs);

@@ -112,12 +112,12 @@ void RemoveEmptyFolders(fs::path path, const fs::path& root) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(const fs::path& folder, const std::string& option)
+OutputFolder::OutputFolder(const fs::path& folder, const std::string& option, IfBusy if_busy)
     : path_(fs::absolute(folder).lexically_normal()),
       remedy_("choose another " + option),
       is_new_(!Exists(path_)) {
   CheckWritableDir(path_);
-  lock_.emplace(path_ / (std::string(kNamesFile) + ".lock"), path_, remedy_);
+  lock_.emplace(path_ / (std::string(kNamesFile) + ".lock"), path_, remedy_, if_busy);
   names_ = ReadNames(path_);
   ForgetGone();
 }

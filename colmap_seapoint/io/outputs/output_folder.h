@@ -22,7 +22,8 @@ class OutputFolder {
   // Creates the folder, takes its lock, removes what killed runs left there (temporary_file.h), and
   // forgets the names of files that are gone. `option` is where the user names the folder. Throws
   // Error when it cannot be written, or another run is at work there.
-  OutputFolder(const std::filesystem::path& folder, const std::string& option);
+  OutputFolder(const std::filesystem::path& folder, const std::string& option,
+               IfBusy if_busy = IfBusy::kRefuse);
   // Without a file of ours in the folder nothing of this stays, and no folder that was created.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;

@@ -15,7 +15,6 @@
 namespace colmap_seapoint {
 namespace {
 
-// A killed run's programs need a moment to end.
 constexpr int kAttempts = 10;
 constexpr std::chrono::milliseconds kPause{100};
 
@@ -41,7 +40,7 @@ Attempt TryLock(const std::filesystem::path& path, int descriptor) {
 }  // namespace
 
 RunLock::RunLock(const std::filesystem::path& path, const std::filesystem::path& what,
-                 const std::string& remedy)
+                 const std::string& remedy, IfBusy if_busy)
     : path_(path) {
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     descriptor_ = open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
@@ -52,7 +51,9 @@ RunLock::RunLock(const std::filesystem::path& path, const std::filesystem::path&
     const Attempt result = TryLock(path, descriptor_);
     if (result == Attempt::kLocked) return;
     close(descriptor_);
-    if (result == Attempt::kBusy) std::this_thread::sleep_for(kPause);
+    if (result != Attempt::kBusy) continue;
+    if (if_busy == IfBusy::kRefuse) break;
+    std::this_thread::sleep_for(kPause);
   }
   throw Error(what.string(), "another run is at work there", "wait for it to end, or " + remedy);
 }

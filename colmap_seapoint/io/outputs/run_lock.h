@@ -6,15 +6,18 @@
 
 namespace colmap_seapoint {
 
+// Programs that a killed run had started, and their guard, need a moment to end.
+enum class IfBusy { kRefuse, kWaitForChildren };
+
 // Holds the lock file `path` from its construction to its end, and removes it then. The system ends
 // the lock of a run that is killed, as soon as the programs that it had started have ended too; the
 // file that such a run leaves stops nobody. A file system without locks stops nobody either.
 class RunLock {
  public:
-  // Waits up to a second for a run that is about to end. Throws Error when another run holds it
-  // ("<what>: another run is at work there; <remedy>") or the file cannot be created.
+  // Throws Error when another run holds it ("<what>: another run is at work there; <remedy>"), with
+  // kWaitForChildren after a second, or when the file cannot be created.
   RunLock(const std::filesystem::path& path, const std::filesystem::path& what,
-          const std::string& remedy);
+          const std::string& remedy, IfBusy if_busy = IfBusy::kRefuse);
   ~RunLock();
   RunLock(const RunLock&) = delete;
   RunLock& operator=(const RunLock&) = delete;
