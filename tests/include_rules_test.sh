@@ -9,6 +9,7 @@ cd "$1" || exit 1
 read -r -d '' rooms <<'END'
 colmap_seapoint/base
 colmap_seapoint/io/files        colmap_seapoint/base
+colmap_seapoint/io/outputs      colmap_seapoint/base colmap_seapoint/io/files
 colmap_seapoint/io/image        colmap_seapoint/base colmap_seapoint/io/files
 colmap_seapoint/io/cloud        colmap_seapoint/base colmap_seapoint/io/files
 colmap_seapoint/io/colmap       colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/image
@@ -76,5 +77,5 @@ only_in "only cli prints results, only base/progress prints the log" \
   'colmap_seapoint/(cli/|base/progress|main\.cc)'
 only_in "files are io's, and the pipeline's records and locks (base/parallel asks /proc for room)" \
   'std::[io]?fstream|[^a-zA-Z_]f?open\(|#include <fstream>' \
-  'colmap_seapoint/(io/|cli/command_line|pipeline/stage_runner|base/parallel\.cc)'
+  'colmap_seapoint/(io/|cli/command_line|pipeline/(stage_runner|earlier_outputs)|base/parallel\.cc)'
 exit $failed

@@ -128,6 +128,10 @@ void OptionTable::Add(const std::string& name, std::string* value, const std::st
   Append(&options_, {name, value, help, origin, 0, 0, std::move(choices), false, ""});
 }
 
+void OptionTable::MarkOutput(const std::string& name) {
+  for (OptionInfo& option : options_) option.is_output |= option.name == name;
+}
+
 void OptionTable::AddRequired(const std::string& name, std::string* value,
                               const std::string& help) {
   Append(&options_, {name, value, help, "COLMAP", 0, 0, {}, true, ""});

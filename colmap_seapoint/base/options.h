@@ -21,6 +21,7 @@ struct OptionInfo {
   std::vector<std::string> choices;  // legal values, of strings only; empty = any
   bool required = false;
   std::string default_value;  // text, taken when the option was added
+  bool is_output = false;     // of a path: something is written there
 };
 
 class OptionTable {
@@ -33,6 +34,8 @@ class OptionTable {
            const std::string& origin, double min, double max);
   void Add(const std::string& name, std::string* value, const std::string& help,
            const std::string& origin, std::vector<std::string> choices = {});
+  // What is named by the option is written. Every other option "..._path" names what is only read.
+  void MarkOutput(const std::string& name);
   void AddRequired(const std::string& name, std::string* value, const std::string& help);
 
   const std::vector<OptionInfo>& Options() const { return options_; }

@@ -81,7 +81,7 @@ class MapperRounds {
   MapperRounds(const ColmapProgram& colmap, const MapperJob& job)
       : colmap_(colmap),
         job_(job),
-        folder_(job.output_path.string() + ".tmp"),
+        folder_(job.output_path),
         missing_(job.pictures.begin(), job.pictures.end()) {
     RemoveAll(folder_);
     fs::create_directories(folder_);
@@ -99,8 +99,6 @@ class MapperRounds {
                   "its output is in " +
                       LogOf("1").string());
     }
-    RemoveAll(job_.output_path);
-    Rename(folder_, job_.output_path);
   }
 
  private:

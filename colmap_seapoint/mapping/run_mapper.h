@@ -18,7 +18,7 @@ inline constexpr char kMapperVersion[] = "11";
 struct MapperJob {
   std::filesystem::path database_path;
   std::filesystem::path image_path;
-  std::filesystem::path output_path;  // holds 0/, 1/ ... afterwards
+  std::filesystem::path output_path;  // the caller's own: emptied; holds 0/, 1/ ... afterwards
   std::filesystem::path log_folder;   // gets mapper_1.log, mapper_2.log ...
   // Where given, the global mapper is tried first; the first round proper is then left out when
   // that registers all pictures.
@@ -36,10 +36,9 @@ struct MapperJob {
 // finds one: the models of all rounds are numbered on. When the first round leaves pictures over,
 // or a lens that cannot be adjusted soundly, it is tried with a free distortion too, and the better
 // trial counts: the one with more pictures, then the one with the smaller error. The global
-// mapper's trial is compared in the same way. Models of fewer than 50 points are not taken. Works
-// in <output_path>.tmp (removed first when an earlier run left it), which gets its name when all is
-// done. Throws Error when the mapper fails or no round finds a model, UsageError when it refuses an
-// option's value.
+// mapper's trial is compared in the same way. Models of fewer than 50 points are not taken. Throws
+// Error when the mapper fails or no round finds a model, UsageError when it refuses an option's
+// value.
 void RunMapper(const ColmapProgram& colmap, const MapperJob& job);
 
 // Model folders below `sparse`, in natural order; empty when there is no such folder.

@@ -9,6 +9,11 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/outputs/output_folder.h"
+#include "colmap_seapoint/io/outputs/replaceable_file.h"
+#include "colmap_seapoint/io/outputs/same_file.h"
+#include "colmap_seapoint/pipeline/earlier_outputs.h"
+#include "colmap_seapoint/pipeline/output_paths.h"
 #include "colmap_seapoint/report/comparison_report.h"
 #include "colmap_seapoint/report/difference_files.h"
 
@@ -51,6 +56,23 @@ CompareOptions ToCompareOptions(const CloudComparerOptions& options) {
     throw UsageError("--max_distance must not be below the largest of --distances");
   }
   return compare;
+}
+
+// nullptr when no difference files are asked for.
+std::unique_ptr<OutputFolder> ClaimDifferences(const CloudComparerOptions& options) {
+  if (options.difference_path.empty()) return nullptr;
+  for (const std::string& name : DifferenceNames()) {
+    const auto path = std::filesystem::path(options.difference_path) / name;
+    for (const std::string& input : {options.input_path, options.reference_path}) {
+      if (!IsSameFile(path, input)) continue;
+      throw UsageError("difference_path would replace the cloud " + input +
+                       ", which is to be compared; name another folder");
+    }
+  }
+  auto folder = std::make_unique<OutputFolder>(options.difference_path, "--difference_path");
+  AdoptEarlierOutputs(folder.get());
+  folder->Claim(DifferenceNames());
+  return folder;
 }
 
 // Shows one progress line for each stage of the comparison.
@@ -99,12 +121,19 @@ void CloudComparerOptions::Bind(OptionTable* table) {
   table->Add("unit_in_metres", &unit_in_metres,
              "1: the clouds are in metres, so density is given per cm^2 as well", "ours");
   run.Bind(table);
+  table->MarkOutput("output_path");
+  table->MarkOutput("difference_path");
 }
 
 CommandResult RunCloudComparer(const CloudComparerOptions& options) {
+  CheckOutputPaths(options);
   const CompareOptions compare = ToCompareOptions(options);
   const std::filesystem::path folder = FolderOf(options.output_path);
   CheckWritableDir(folder);
+  const RunLock lock = LockFile(options.output_path, "--output_path");
+  CheckReplaceable(options.output_path, kComparisonJsonWords,
+                   "choose another --output_path, or remove the file");
+  const auto difference_folder = ClaimDifferences(options);
   DifferenceFiles differences(options.difference_path);
   StageProgress progress;
   CompareCallbacks callbacks;

@@ -12,13 +12,15 @@
 #include "colmap_seapoint/io/cloud/ply.h"
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
-#include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/model_units.h"
 #include "colmap_seapoint/io/files/run_report.h"
+#include "colmap_seapoint/io/outputs/output_folder.h"
 #include "colmap_seapoint/mapping/run_mapper.h"
 #include "colmap_seapoint/pictures/model_pictures.h"
 #include "colmap_seapoint/pictures/picture_scale.h"
 #include "colmap_seapoint/pictures/read_rig.h"
+#include "colmap_seapoint/pipeline/earlier_outputs.h"
+#include "colmap_seapoint/pipeline/output_paths.h"
 #include "colmap_seapoint/pipeline/write_maps.h"
 #include "colmap_seapoint/report/debug_figures.h"
 #include "colmap_seapoint/report/pairs_csv.h"
@@ -27,6 +29,7 @@ namespace colmap_seapoint {
 namespace {
 
 void Validate(const PartialDensifierOptions& options) {
+  CheckOutputPaths(options);
   for (const std::string& problem :
        {options.densification.Check(), options.extraction.Check(), CheckRig(options.rig)}) {
     if (!problem.empty()) throw UsageError(problem);
@@ -162,16 +165,31 @@ void FillReport(const SparseModel& model, const SequenceReport& sequence, RunRep
   report->images_used = static_cast<int64_t>(used.size());
 }
 
+// Before anything is computed. The maps' names are the pictures', which are claimed once they are
+// read (StartMaps()).
+void ClaimOutputs(const PartialDensifierOptions& options, OutputFolder* folder) {
+  AdoptEarlierOutputs(folder);
+  std::vector<std::string> names = CloudNames();
+  if (options.densification.write_debug) names.emplace_back("debug");
+  folder->Claim(names);
+}
+
 // The models that one run of the mapper left: each has its own frame and gets its own folder.
 CommandResult DensifySideBySide(const PartialDensifierOptions& options,
                                 const std::vector<std::filesystem::path>& models,
                                 ColmapDatabase* database) {
+  std::vector<PartialDensifierOptions> jobs(models.size(), options);
+  for (size_t i = 0; i < models.size(); ++i) {
+    jobs[i].input_path = models[i].string();
+    jobs[i].output_path =
+        (std::filesystem::path(options.output_path) / models[i].filename()).string();
+    // The last one is not to be refused after hours of work on the others.
+    OutputFolder folder(jobs[i].output_path, "--output_path");
+    ClaimOutputs(jobs[i], &folder);
+  }
   CommandResult result;
   int64_t num_points = 0;
-  for (const std::filesystem::path& model : models) {
-    PartialDensifierOptions one = options;
-    one.input_path = model.string();
-    one.output_path = (std::filesystem::path(options.output_path) / model.filename()).string();
+  for (const PartialDensifierOptions& one : jobs) {
     LogInfo("Model " + one.input_path);
     const RunReport report = DensifyModel(one, database);
     num_points += report.points;
@@ -189,8 +207,11 @@ CommandResult DensifySideBySide(const PartialDensifierOptions& options,
 // nullptr without PartialDensification.write_maps. Their sparse/ is written at once: it takes the
 // model's features too, which are forgotten again before densification.
 std::unique_ptr<MapWriter> StartMaps(const PartialDensifierOptions& options,
-                                     const SparseModel& model) {
+                                     const SparseModel& model, OutputFolder* folder) {
   if (!options.densification.write_maps) return nullptr;
+  std::vector<std::string> names;
+  for (const PosedImage& image : model.images) names.push_back(image.name);
+  folder->Claim(DenseMapNames(names));
   auto maps = std::make_unique<MapWriter>(model, options.image_path, options.output_path,
                                           options.densification,
                                           EffectiveNumThreads(options.run.num_threads));
@@ -214,13 +235,15 @@ void PartialDensifierOptions::Bind(OptionTable* table) {
   extraction.Bind(table);
   matching.Bind(table);
   run.Bind(table);
+  table->MarkOutput("output_path");
 }
 
 RunReport DensifyModel(const PartialDensifierOptions& options, ColmapDatabase* database) {
   Validate(options);
   RunReport report = StartReport("partial_densifier", options, options.run);
-  const std::filesystem::path output = options.output_path;
-  CheckWritableDir(output);
+  OutputFolder folder(options.output_path, "--output_path");
+  const std::filesystem::path& output = folder.Path();
+  ClaimOutputs(options, &folder);
   const ModelUnits units = ReadModelUnits(options.input_path).value_or(ModelUnits());
   report.units = UnitsWord(units);
   SequenceReport sequence;
@@ -237,7 +260,7 @@ RunReport DensifyModel(const PartialDensifierOptions& options, ColmapDatabase* d
                  "found again");
     }
     const StereoRig rig = ReadRig(options.rig, options.image_path, options.input_path, model);
-    const std::unique_ptr<MapWriter> maps = StartMaps(options, model);
+    const std::unique_ptr<MapWriter> maps = StartMaps(options, model, &folder);
     CloudWriter cloud(output / "fused.ply");
     sequence = Densify(options, model, rig, &pictures, &cloud, maps.get());
     DescribeInputs(options, pictures, &report);

@@ -31,7 +31,9 @@ struct PartialDensifierOptions {
 // Pictures may be larger or smaller than the model's cameras, in the same proportions (paper 4,
 // hybrid resolution): the cameras, and the database's SeaPoints, are scaled to them.
 // Writes fused.ply, fused.ply.vis, pairs.csv, units.json (the model's own) and run.json into
-// output_path. Throws Error when no picture of the model is readable. When no pair gave a point,
+// output_path, which is locked meanwhile. Throws Error when another run works there, when one of
+// these files is there and not ours (before anything is read), and when no picture of the model is
+// readable. When no pair gave a point,
 // the report says 0 points, no cloud is written, and pairs.csv says why. `database` is the one at
 // options.database_path, open; nullptr when there is none.
 RunReport DensifyModel(const PartialDensifierOptions& options, ColmapDatabase* database);

@@ -28,22 +28,11 @@ PartialDensifierOptions DensifierOptions(const AutomaticReconstructorOptions& op
   return densifier;
 }
 
-std::vector<fs::path> OutputsOf(const fs::path& folder, const RunReport& report, bool write_maps) {
-  std::vector<fs::path> outputs = {folder / "pairs.csv"};
-  if (report.points == 0) return outputs;
-  outputs.push_back(folder / "fused.ply");
-  outputs.push_back(folder / "fused.ply.vis");
-  if (write_maps) outputs.push_back(folder / "stereo" / "fusion.cfg");
-  return outputs;
-}
-
 RunReport DensifyOnce(const PartialDensifierOptions& densifier, const Stage& stage,
                       ColmapDatabase* database, WorkspaceState* state) {
   return RunStage<RunReport>(state, stage, [&]() -> StageOutput<RunReport> {
     RunReport report = DensifyModel(densifier, database);
-    const auto outputs =
-        OutputsOf(densifier.output_path, report, densifier.densification.write_maps);
-    return {std::move(report), outputs};
+    return {std::move(report), FilesOfOurs(densifier.output_path)};
   });
 }
 

@@ -13,6 +13,8 @@
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/image/image_file.h"
+#include "colmap_seapoint/io/outputs/run_lock.h"
+#include "colmap_seapoint/pipeline/output_paths.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -30,6 +32,10 @@ struct Extracted {
   RunReport::Input input;
   Features features;
 };
+
+std::filesystem::path ReportPath(const FeatureExtractorOptions& options) {
+  return options.database_path + "." + kCommand + ".run.json";
+}
 
 // Finds the SeaPoints of one picture. All that they depend on is fixed for the run, except the
 // picture itself.
@@ -127,6 +133,8 @@ class Extractor {
 };
 
 void Validate(const FeatureExtractorOptions& options) {
+  CheckOutputPaths(options);
+  CheckRunReport(ReportPath(options));
   for (const std::string& problem : {options.reader.Check(), options.extraction.Check()}) {
     if (!problem.empty()) throw UsageError(problem);
   }
@@ -192,7 +200,7 @@ void ExtractAll(const Extractor& extractor, int num_threads,
 
 // Writes the report; throws Error when no picture is usable.
 void Finish(const FeatureExtractorOptions& options, const RunReport& report) {
-  WriteRunReport(options.database_path + "." + kCommand + ".run.json", report);
+  WriteRunReport(ReportPath(options), report);
   if (report.images_used > 0) return;
   throw Error(options.image_path,
               "none of its " + std::to_string(report.images_in) + " pictures can be used (" +
@@ -211,6 +219,7 @@ void FeatureExtractorOptions::Bind(OptionTable* table) {
   reader.Bind(table);
   extraction.Bind(table);
   run.Bind(table);
+  table->MarkOutput("database_path");
 }
 
 PictureSet ReadPictureSet(const FeatureExtractorOptions& options) {
@@ -244,6 +253,7 @@ RunReport ExtractPictures(const FeatureExtractorOptions& options, const PictureS
 
 CommandResult RunFeatureExtractor(const FeatureExtractorOptions& options) {
   const PictureSet pictures = ReadPictureSet(options);
+  const RunLock lock = LockFile(options.database_path, "--database_path");
   ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kCreateIfMissing);
   return ResultOf(ExtractPictures(options, pictures, {}, &database));
 }

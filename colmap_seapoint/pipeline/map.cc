@@ -1,9 +1,13 @@
 #include "colmap_seapoint/pipeline/map.h"
 
+#include <filesystem>
 #include <set>
+#include <system_error>
+#include <utility>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/io/files/run_report_json.h"
@@ -11,6 +15,8 @@
 
 namespace colmap_seapoint {
 namespace {
+
+namespace fs = std::filesystem;
 
 // Pictures with a verified pair.
 std::vector<std::string> MatchedPictures(const ColmapDatabase& database) {
@@ -38,6 +44,59 @@ std::string Inputs(const MappingPlan& plan, const ColmapDatabase& database,
          (job.global_round ? "global" : "") + Text(job.first_round) + Text(job.later_rounds);
 }
 
+// The models below `sparse` that are ours.
+std::vector<fs::path> OurModels(const fs::path& sparse, const OutputFolder& workspace) {
+  std::vector<fs::path> models;
+  for (const fs::path& model : ListModels(sparse)) {
+    const std::string name = model.lexically_relative(workspace.Path()).generic_string();
+    if (workspace.IsOurs(name)) models.push_back(model);
+  }
+  return models;
+}
+
+// Before hours of mapping: whose model has a number for its name would be in the way of ours.
+void RefuseForeignModels(const fs::path& sparse, const OutputFolder& workspace) {
+  for (const fs::path& model : ListModels(sparse)) {
+    const fs::path name = model.lexically_relative(workspace.Path());
+    const std::string number = name.filename().string();
+    if (number.find_first_not_of("0123456789") != std::string::npos) continue;
+    for (const std::string& file : ModelFileNames()) {
+      workspace.CheckFree({(name / file).generic_string()});
+    }
+  }
+}
+
+void MoveFile(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::create_directories(to.parent_path(), error);
+  if (!error) fs::rename(from, to, error);
+  if (!error) return;
+  throw Error(from.string(), "cannot be renamed to " + to.string() + " (" + error.message() + ")",
+              "check the folder's permissions");
+}
+
+// The models in `from`, file by file, in place of those of ours in `sparse`. Then `from` is
+// removed.
+void PutModelsInPlace(const fs::path& from, const fs::path& sparse, OutputFolder* workspace) {
+  const auto name_of = [&](const fs::path& path) {
+    return path.lexically_relative(workspace->Path()).generic_string();
+  };
+  std::vector<std::pair<fs::path, fs::path>> moves;
+  std::vector<std::string> names = {name_of(sparse)};
+  for (const fs::path& model : ListModels(from)) {
+    for (const auto& entry : fs::recursive_directory_iterator(model)) {
+      if (!entry.is_regular_file()) continue;
+      moves.emplace_back(entry.path(), sparse / entry.path().lexically_relative(from));
+      names.push_back(name_of(moves.back().second));
+    }
+  }
+  workspace->Remove(name_of(sparse));
+  workspace->Claim(names);
+  for (const auto& [source, target] : moves) MoveFile(source, target);
+  std::error_code ignored;  // a leftover of it is removed by the next mapping
+  fs::remove_all(from, ignored);
+}
+
 }  // namespace
 
 MappingPlan PlanMapping(const AutomaticReconstructorOptions& options, const Workspace& workspace) {
@@ -51,7 +110,8 @@ MappingPlan PlanMapping(const AutomaticReconstructorOptions& options, const Work
   MapperJob& job = plan.job;
   job.database_path = workspace.database;
   job.image_path = workspace.images;
-  job.output_path = workspace.sparse;
+  job.output_path = workspace.sparse.string() + ".tmp";
+  plan.sparse = workspace.sparse;
   job.log_folder = workspace.report;
   job.first_round = OptionsOfRound(plan.colmap, Round::kFirst, effort, seed, options.mapper);
   job.later_rounds = OptionsOfRound(plan.colmap, Round::kLater, effort, seed, options.mapper);
@@ -70,17 +130,20 @@ Mapping MapPictures(MappingPlan plan, const ColmapDatabase& database, WorkspaceS
                 "take pictures that overlap more, or raise --SeaPointExtraction.max_num_features");
   }
   const Stage stage = {"mapper", kMapperVersion, Inputs(plan, database, *state),
-                       "The models in " + plan.job.output_path.string() + " are there already"};
+                       "The models in " + plan.sparse.string() + " are there already"};
   using Seconds = std::vector<RunReport::Stage>;
   const auto work = [&]() -> StageOutput<Seconds> {
+    RefuseForeignModels(plan.sparse, *state->Folder());
     RunReport report;
     {
       StageTimer timer(&report, "mapper");
       RunMapper(plan.colmap, plan.job);
     }
-    return {report.stages, ListModels(plan.job.output_path)};
+    PutModelsInPlace(plan.job.output_path, plan.sparse, state->Folder());
+    return {report.stages, OurModels(plan.sparse, *state->Folder())};
   };
-  return {StageFingerprint(stage), RunStage<Seconds>(state, stage, work)};
+  const Seconds seconds = RunStage<Seconds>(state, stage, work);
+  return {StageFingerprint(stage), OurModels(plan.sparse, *state->Folder()), seconds};
 }
 
 }  // namespace colmap_seapoint

@@ -16,7 +16,8 @@ namespace colmap_seapoint {
 
 struct MappingPlan {
   ColmapProgram colmap;
-  MapperJob job;  // but for the pictures, which are known once they are matched
+  MapperJob job;                 // but for the pictures, which are known once they are matched
+  std::filesystem::path sparse;  // where the models are put when all of them are made
 };
 
 // Checks what mapping needs before any work is done. Throws Error when there is no COLMAP,
@@ -24,12 +25,15 @@ struct MappingPlan {
 MappingPlan PlanMapping(const AutomaticReconstructorOptions& options, const Workspace& workspace);
 
 struct Mapping {
-  std::string fingerprint;  // of all that the models depend on
+  std::string fingerprint;                    // of all that the models depend on
+  std::vector<std::filesystem::path> models;  // ours in WORKSPACE/sparse, in natural order
   std::vector<RunReport::Stage> seconds;
 };
 
-// The models in WORKSPACE/sparse: those that are there, if nothing changed, or new ones. Throws
-// Error when no two pictures show the same place, and as RunMapper does.
+// The models in WORKSPACE/sparse: those that are there, if nothing changed, or new ones in place of
+// them. What else is in that folder stays, and is not among them. Throws Error when no two pictures
+// show the same place, when a model of somebody else's has a number for its name, and as RunMapper
+// does.
 Mapping MapPictures(MappingPlan plan, const ColmapDatabase& database, WorkspaceState* state);
 
 }  // namespace colmap_seapoint

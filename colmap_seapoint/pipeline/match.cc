@@ -8,10 +8,12 @@
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/colmap/database_matches.h"
+#include "colmap_seapoint/io/outputs/run_lock.h"
 #include "colmap_seapoint/pairing/loop_pairs.h"
 #include "colmap_seapoint/pairing/match_pairs.h"
 #include "colmap_seapoint/pairing/pair_lists.h"
 #include "colmap_seapoint/pairing/spatial_pairs.h"
+#include "colmap_seapoint/pipeline/output_paths.h"
 #include "feature/matching/overlap_share.h"
 
 namespace colmap_seapoint {
@@ -21,6 +23,8 @@ namespace {
 template <typename Options, typename MatchImages>
 RunReport Match(const std::string& command, const Options& options, const MatchImages& match_images,
                 ColmapDatabase* database) {
+  const std::filesystem::path report_path = options.database_path + "." + command + ".run.json";
+  CheckRunReport(report_path);
   RunReport report = StartReport(command, options, options.run);
   {
     StageTimer timer(&report, command);
@@ -28,12 +32,13 @@ RunReport Match(const std::string& command, const Options& options, const MatchI
     match_images(images, &report);
     WarnOfLonelyImages(*database, images);
   }
-  WriteRunReport(options.database_path + "." + command + ".run.json", report);
+  WriteRunReport(report_path, report);
   return report;
 }
 
 void BindDatabase(std::string* path, OptionTable* table) {
   table->AddRequired("database_path", path, "COLMAP database with SeaPoints");
+  table->MarkOutput("database_path");
 }
 
 }  // namespace
@@ -105,16 +110,22 @@ RunReport MatchSpatially(const SpatialMatcherOptions& options, ColmapDatabase* d
 }
 
 CommandResult RunSequentialMatcher(const SequentialMatcherOptions& options) {
+  CheckOutputPaths(options);
+  const RunLock lock = LockFile(options.database_path, "--database_path");
   ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWrite);
   return ResultOf(MatchSequentially(options, &database));
 }
 
 CommandResult RunExhaustiveMatcher(const ExhaustiveMatcherOptions& options) {
+  CheckOutputPaths(options);
+  const RunLock lock = LockFile(options.database_path, "--database_path");
   ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWrite);
   return ResultOf(MatchExhaustively(options, &database));
 }
 
 CommandResult RunSpatialMatcher(const SpatialMatcherOptions& options) {
+  CheckOutputPaths(options);
+  const RunLock lock = LockFile(options.database_path, "--database_path");
   ColmapDatabase database(options.database_path, ColmapDatabase::Mode::kReadWrite);
   return ResultOf(MatchSpatially(options, &database));
 }

@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <set>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -50,19 +49,34 @@ Stage DatabaseStage(const Options& options, const std::vector<ReadablePicture>& 
   return {"database", kMatchingVersion, text, ""};
 }
 
-// The stage that finds the untied pictures: all that decides which they are. A picture counts as
-// another one when its size or its time of change differs: to look once more costs time only.
-Stage SecondChanceStage(const Options& options, const Workspace& workspace,
-                        const Stage& database_stage, const std::vector<ReadablePicture>& pictures) {
-  std::string text =
-      StageFingerprint(database_stage) + OptionsFingerprint(OptionValues(options.extraction));
-  for (const ReadablePicture& picture : pictures) {
-    std::error_code error;
-    const fs::path path = workspace.images / picture.name;
-    text += "\n" + std::to_string(fs::file_size(path, error)) + " " +
-            std::to_string(fs::last_write_time(path, error).time_since_epoch().count());
-  }
-  return {"second_chance", kMatchingVersion, text, ""};
+// The stage that finds the untied pictures: all that decides which they are, but for what the
+// pictures hold (SecondChance::pictures).
+Stage SecondChanceStage(const Options& options, const Stage& database_stage) {
+  return {"second_chance", kMatchingVersion,
+          StageFingerprint(database_stage) + OptionsFingerprint(OptionValues(options.extraction)),
+          ""};
+}
+
+// A picture is told from another one of its name by its content, which the extraction hashes
+// anyway: size and time may be the same (a restored copy), and times differ where nothing did (a
+// moved survey).
+struct SecondChance {
+  std::set<std::string> untied;  // names
+  std::string pictures;          // a hash of all pictures that they were found among
+};
+
+void to_json(nlohmann::ordered_json& json, const SecondChance& chance) {
+  json = {{"untied", chance.untied}, {"pictures", chance.pictures}};
+}
+
+void from_json(const nlohmann::ordered_json& json, SecondChance& chance) {
+  chance = {json.at("untied").get<std::set<std::string>>(), json.at("pictures")};
+}
+
+std::string HashOf(const std::vector<RunReport::Input>& pictures) {
+  std::string text;
+  for (const RunReport::Input& picture : pictures) text += picture.name + " " + picture.hash + "\n";
+  return HashText(text);
 }
 
 FeatureExtractorOptions ExtractorOptions(const Options& options, const Workspace& workspace) {
@@ -93,36 +107,39 @@ RunReport MatchAll(const Options& options, const Workspace& workspace, size_t nu
 }
 
 // SeaPoints and matches of all pictures; then once more with SI-SeaPoints for those that are
-// untied. An earlier run that found these already spares the first pass.
+// untied. An earlier run that found these already, among the same pictures, spares the first pass.
 void ExtractAndMatch(const Options& options, const Workspace& workspace, const PictureSet& pictures,
                      const Stage& second_chance, ColmapDatabase* database, WorkspaceState* state,
                      RunReport* report) {
-  using Names = std::set<std::string>;
   const FeatureExtractorOptions extractor = ExtractorOptions(options, workspace);
-  const auto pass = [&](const Names& second_chance_names) {
+  const auto pass = [&](const std::set<std::string>& second_chance_names) {
     const RunReport extracted = ExtractPictures(extractor, pictures, second_chance_names, database);
     report->images_in = extracted.images_in;
     report->inputs = extracted.inputs;
     AddPart(extracted, report);
     AddPart(MatchAll(options, workspace, pictures.readable.size(), database), report);
   };
-  const auto known = ResultIfDone<Names>(*state, second_chance);
-  pass(known.value_or(Names()));
-  if (known || options.extraction.num_levels > 1) return;
-  const Names untied = RunStage<Names>(state, second_chance, [&]() -> StageOutput<Names> {
-    return {FindSecondChancePictures(*database), {}};
-  });
-  if (untied.empty()) return;
-  LogInfo(std::to_string(untied.size()) +
+  const auto known = ResultIfDone<SecondChance>(*state, second_chance);
+  pass(known ? known->untied : std::set<std::string>());
+  if (known && known->pictures == HashOf(report->inputs)) return;
+  if (known && !known->untied.empty()) pass({});
+  state->Forget(second_chance.name);
+  if (options.extraction.num_levels > 1) return;
+  const auto found =
+      RunStage<SecondChance>(state, second_chance, [&]() -> StageOutput<SecondChance> {
+        return {{FindSecondChancePictures(*database), HashOf(report->inputs)}, {}};
+      });
+  if (found.untied.empty()) return;
+  LogInfo(std::to_string(found.untied.size()) +
           " pictures are untied, or next to one that is: SI-SeaPoints for them");
-  pass(untied);
+  pass(found.untied);
 }
 
-// The models in WORKSPACE/sparse; pictures that are in none of them are left out.
-std::vector<ModelSummary> ReadModels(const Workspace& workspace, RunReport* report) {
+// Pictures that are in none of the models are left out.
+std::vector<ModelSummary> ReadModels(const std::vector<fs::path>& paths, RunReport* report) {
   std::vector<ModelSummary> models;
   std::set<std::string> known;
-  for (const fs::path& path : ListModels(workspace.sparse)) {
+  for (const fs::path& path : paths) {
     ModelSummary model;
     model.name = path.filename().string();
     model.path = path;
@@ -172,7 +189,7 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& opt
   options.Check();
   const Workspace workspace(options.image_path, options.workspace_path);
   const MappingPlan plan = PlanMapping(options, workspace);
-  WorkspaceState state(workspace.root);
+  WorkspaceState state(workspace.root, workspace.Names());
   CheckWritableDir(workspace.report);
   RunReport report = StartReport("automatic_reconstructor", options, options.run);
   report.options.insert(report.options.end(), options.mapper.begin(), options.mapper.end());
@@ -181,12 +198,11 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& opt
   const Stage begin = DatabaseStage(options, pictures.readable);
   ColmapDatabase database =
       OpenWorkspaceDatabase(workspace.database, pictures.readable, options.reader, begin, &state);
-  ExtractAndMatch(options, workspace, pictures,
-                  SecondChanceStage(options, workspace, begin, pictures.readable), &database,
+  ExtractAndMatch(options, workspace, pictures, SecondChanceStage(options, begin), &database,
                   &state, &report);
   const Mapping mapping = MapPictures(plan, database, &state);
   report.stages.insert(report.stages.end(), mapping.seconds.begin(), mapping.seconds.end());
-  std::vector<ModelSummary> models = ReadModels(workspace, &report);
+  std::vector<ModelSummary> models = ReadModels(mapping.models, &report);
   ScaleModels(options, workspace, mapping.fingerprint, &state, &models, &report);
   DensifyModels(options, workspace, mapping.fingerprint, &database, &state, &models, &report);
   return WriteReport(workspace, models, report);

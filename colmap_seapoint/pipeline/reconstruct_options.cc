@@ -5,6 +5,7 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/georeference/scale_measurements.h"
 #include "colmap_seapoint/pictures/read_rig.h"
+#include "colmap_seapoint/pipeline/output_paths.h"
 
 namespace colmap_seapoint {
 
@@ -35,6 +36,7 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
   matching.Bind(table);
   densification.Bind(table);
   run.Bind(table);
+  table->MarkOutput("workspace_path");
 }
 
 void AutomaticReconstructorOptions::Preset() {
@@ -52,6 +54,7 @@ ForeignOptions AutomaticReconstructorOptions::Foreign() {
 }
 
 void AutomaticReconstructorOptions::Check() const {
+  CheckOutputPaths(*this);
   for (const std::string& problem :
        {reader.Check(), extraction.Check(), densification.Check(), CheckRig(rig), scale.Check()}) {
     if (!problem.empty()) throw UsageError(problem);

@@ -2,15 +2,18 @@
 
 #include <filesystem>
 #include <iostream>
-#include <system_error>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/io/cloud/transform_cloud.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/colmap/colmap_rigs.h"
-#include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/outputs/output_folder.h"
+#include "colmap_seapoint/io/outputs/replaceable_file.h"
+#include "colmap_seapoint/io/outputs/same_file.h"
 #include "colmap_seapoint/pictures/read_rig.h"
+#include "colmap_seapoint/pipeline/earlier_outputs.h"
+#include "colmap_seapoint/pipeline/output_paths.h"
 #include "colmap_seapoint/report/scale_report.h"
 
 namespace colmap_seapoint {
@@ -20,14 +23,10 @@ namespace fs = std::filesystem;
 
 constexpr char kScaleFile[] = "scale.json";
 
-bool IsSamePath(const fs::path& a, const fs::path& b) {
-  std::error_code error;
-  return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error);
-}
-
 bool NamesFolders(const std::string& rig) { return rig.find(',') != std::string::npos; }
 
 void Validate(const ModelScalerOptions& options) {
+  CheckOutputPaths(options);
   const ScaleSources& sources = options.sources;
   for (const std::string& problem : {sources.Check(), CheckRig(options.rig)}) {
     if (!problem.empty()) throw UsageError(problem);
@@ -40,32 +39,26 @@ void Validate(const ModelScalerOptions& options) {
   if (NamesFolders(options.rig) && !fs::is_directory(options.image_path)) {
     throw UsageError("rig is '" + options.rig + "', it needs image_path: the folder of its two");
   }
-  if (IsSamePath(options.input_path, options.output_path)) {
-    throw UsageError("output_path is the input_path: the model would be lost; name another folder");
-  }
   if (!options.cloud_path.empty() &&
-      IsSamePath(options.cloud_path,
+      IsSameFile(options.cloud_path,
                  fs::path(options.output_path) / fs::path(options.cloud_path).filename())) {
     throw UsageError(
         "cloud_path lies in output_path: the cloud would be lost; name another folder");
   }
 }
 
-// The folder, without what an earlier run left there: rigs of one model beside another would be
-// read as its own.
-void PrepareOutput(const fs::path& output) {
-  CheckWritableDir(output);
-  std::error_code ignored;
-  if (IsSparseModel(output) && !fs::exists(output / kScaleFile, ignored)) {
-    throw Error(output.string(), "holds a model that model_scaler did not write",
-                "choose another --output_path");
+// Before anything is computed. `scaled_name` of the cloud: "" without one.
+void ClaimOutputs(const ModelScalerOptions& options, OutputFolder* folder) {
+  AdoptEarlierOutputs(folder);
+  std::vector<std::string> names = ScaledModelNames();
+  if (!options.cloud_path.empty()) {
+    const std::string cloud = fs::path(options.cloud_path).filename().string();
+    names.insert(names.end(), {cloud, cloud + ".vis"});
   }
-  fs::remove(output / kUnitsFile, ignored);
-  for (const std::string stem : {"cameras", "images", "points3D", "rigs", "frames"}) {
-    for (const std::string extension : {".bin", ".txt"}) {
-      fs::remove(output / (stem + extension), ignored);
-    }
-  }
+  folder->Claim(names);
+  if (options.report_path.empty()) return;
+  CheckReplaceable(options.report_path, kScaleCsvHeader,
+                   "choose another --report_path, or remove the file");
 }
 
 void DescribeInputs(const ModelScalerOptions& options, RunReport* report) {
@@ -76,12 +69,14 @@ void DescribeInputs(const ModelScalerOptions& options, RunReport* report) {
   }
 }
 
-// scale.json goes first: it marks the folder as ours; units.json last: the model is whole.
+// What an earlier run left there goes first: rigs of one model beside another would be read as its
+// own. units.json comes last: the model is whole then.
 void WriteResult(const ModelScalerOptions& options, const ScaleMeasurements& measurements,
-                 const SimilarityEstimate& estimate, SparseModel* model) {
-  const fs::path input = options.input_path, output = options.output_path;
+                 const SimilarityEstimate& estimate, OutputFolder* folder, SparseModel* model) {
+  const fs::path input = options.input_path, output = folder->Path();
   const Similarity3d& metric_from_model = estimate.metric_from_model;
-  PrepareOutput(output);
+  for (const std::string& name : ScaledModelNames()) folder->Remove(name);
+  ClaimOutputs(options, folder);
   WriteScaleJson(output / kScaleFile, measurements, estimate);
   TransformModel(metric_from_model, model);
   TransformRigFiles(input, output, metric_from_model);
@@ -111,11 +106,15 @@ void ModelScalerOptions::Bind(OptionTable* table) {
   table->Add("report_path", &report_path,
              "CSV to write, one row a measurement with its residual; empty = none", "ours");
   run.Bind(table);
+  table->MarkOutput("output_path");
+  table->MarkOutput("report_path");
 }
 
 ScaledModel ScaleModel(const ModelScalerOptions& options) {
   Validate(options);
   CheckScaleTables(options.sources);
+  OutputFolder folder(options.output_path, "--output_path");
+  ClaimOutputs(options, &folder);
   ScaledModel scaled;
   RunReport& report = scaled.report;
   report = StartReport("model_scaler", options, options.run);
@@ -141,7 +140,7 @@ ScaledModel ScaleModel(const ModelScalerOptions& options) {
     }
     measurements.units.scale_sigma_relative =
         estimate.scale_sigma / estimate.metric_from_model.scale;
-    WriteResult(options, measurements, estimate, &model);
+    WriteResult(options, measurements, estimate, &folder, &model);
     scaled.text = ScaleText(measurements, estimate);
     scaled.line = ScaleLine(estimate);
     report.units = UnitsWord(measurements.units);

@@ -10,6 +10,7 @@
 #include "colmap_seapoint/io/files/content_hash.h"
 #include "colmap_seapoint/io/files/model_units.h"
 #include "colmap_seapoint/io/files/run_report_json.h"
+#include "colmap_seapoint/pipeline/earlier_outputs.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -32,12 +33,9 @@ std::string Inputs(const ModelScalerOptions& scaler, const std::string& mapper_f
 ScaledModel ScaleOnce(const ModelScalerOptions& scaler, const Stage& stage, WorkspaceState* state) {
   const fs::path output = scaler.output_path;
   return RunStage<ScaledModel>(state, stage, [&]() -> StageOutput<ScaledModel> {
-    std::error_code ignored;
-    fs::remove_all(output, ignored);
+    RemoveOutputs(output);
     ScaledModel scaled = ScaleModel(scaler);
-    std::vector<fs::path> outputs;
-    for (const auto& entry : fs::directory_iterator(output)) outputs.push_back(entry.path());
-    return {std::move(scaled), outputs};
+    return {std::move(scaled), FilesOfOurs(output)};
   });
 }
 

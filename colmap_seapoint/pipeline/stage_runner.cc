@@ -1,20 +1,16 @@
 #include "colmap_seapoint/pipeline/stage_runner.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <chrono>
-#include <cstring>
 #include <fstream>
 #include <system_error>
-#include <thread>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/content_hash.h"
+#include "colmap_seapoint/io/outputs/file_record.h"
+#include "colmap_seapoint/pipeline/earlier_outputs.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -27,42 +23,53 @@ constexpr char kOutputs[] = "outputs";
 // More than all rounds of the mapper together leave.
 constexpr size_t kMaxModels = 1000;
 
-// A killed run's programs need a moment to end.
-constexpr int kLockAttempts = 20;
-constexpr std::chrono::milliseconds kLockPause{100};
+constexpr char kState[] = "state";
 
-bool TakeLock(int lock) {
-  for (int attempt = 0; attempt < kLockAttempts; ++attempt) {
-    if (flock(lock, LOCK_EX | LOCK_NB) == 0) return true;
-    if (errno != EWOULDBLOCK && errno != EINTR) return true;  // a file system without locks
-    std::this_thread::sleep_for(kLockPause);
+Json ToJson(const FileRecord& record) {
+  return {{"path", record.path}, {"size", record.size}, {"hash", record.hash}};
+}
+
+// What is wrong with an output, or "". Throws a json exception for what is no record of one.
+std::string OutputProblem(const std::filesystem::path& workspace, const Json& output) {
+  if (output.is_object()) {
+    return RecordProblem(workspace, {output.at("path"), output.at("size"), output.at("hash")});
   }
-  return false;
+  // Of an earlier version: the path alone.
+  const std::filesystem::path path = workspace / output.get<std::string>();
+  std::error_code error;
+  return std::filesystem::exists(path, error) ? "" : path.string() + " is gone";
+}
+
+bool OutputsAreWhole(const std::filesystem::path& workspace, const Json& outputs) {
+  for (const Json& output : outputs) {
+    std::string problem;
+    try {
+      problem = OutputProblem(workspace, output);
+    } catch (const Json::exception&) {
+      return false;
+    }
+    if (problem.empty()) continue;
+    LogWarning(problem + ": it is made again");
+    return false;
+  }
+  return true;
 }
 
 }  // namespace
 
-WorkspaceState::WorkspaceState(const std::filesystem::path& workspace)
-    : workspace_(std::filesystem::absolute(workspace).lexically_normal()),
-      folder_(workspace_ / "state") {
-  CheckWritableDir(workspace_);
-  CheckWritableDir(folder_);
-  const std::string lock_path = (folder_ / "lock").string();
-  lock_ = open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (lock_ < 0) {
-    throw Error(lock_path, std::string("cannot be opened (") + std::strerror(errno) + ")",
-                "choose a --workspace_path that you may write to");
-  }
-  if (TakeLock(lock_)) return;
-  close(lock_);
-  throw Error(workspace.string(), "another run is at work in this workspace",
-              "wait for it to end, or choose another --workspace_path");
+WorkspaceState::WorkspaceState(const std::filesystem::path& workspace,
+                               std::vector<std::string> outputs)
+    : folder_(workspace, "--workspace_path", IfBusy::kWaitForChildren) {
+  AdoptEarlierWorkspace(&folder_);
+  outputs.emplace_back(kState);
+  folder_.Claim(outputs);
+  CheckWritableDir(StateFolder());
 }
 
-WorkspaceState::~WorkspaceState() { close(lock_); }
+std::filesystem::path WorkspaceState::StateFolder() const { return Workspace() / kState; }
 
 std::filesystem::path WorkspaceState::PathOf(const std::string& stage) const {
-  return folder_ / (stage + ".json");
+  return StateFolder() / (stage + ".json");
 }
 
 std::optional<Json> WorkspaceState::Read(const std::string& stage) const {
@@ -74,7 +81,7 @@ std::optional<Json> WorkspaceState::Read(const std::string& stage) const {
 }
 
 void WorkspaceState::Write(const std::string& stage, const Json& record) {
-  syncfs(lock_);
+  syncfs(folder_.Lock().Descriptor());
   WriteTextFile(PathOf(stage), record.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
@@ -96,11 +103,8 @@ std::optional<Json> ReadIfDone(const WorkspaceState& state, const Stage& stage) 
   auto record = state.Read(stage.name);
   if (!record || record->value(kFingerprint, Json()) != StageFingerprint(stage))
     return std::nullopt;
-  for (const Json& output : record->value(kOutputs, Json::array())) {
-    std::error_code error;
-    if (!output.is_string()) return std::nullopt;
-    if (!std::filesystem::exists(state.Workspace() / output.get<std::string>(), error))
-      return std::nullopt;
+  if (!OutputsAreWhole(state.Workspace(), record->value(kOutputs, Json::array()))) {
+    return std::nullopt;
   }
   if (!stage.done.empty()) LogInfo(stage.done);
   return record;
@@ -111,8 +115,8 @@ void FinishStage(const Stage& stage, const Json& result,
   Json record;
   record[kFingerprint] = StageFingerprint(stage);
   record[kOutputs] = Json::array();
-  for (const std::filesystem::path& output : outputs) {
-    record[kOutputs].push_back(output.lexically_relative(state->Workspace()).string());
+  for (const FileRecord& file : RecordFiles(state->Workspace(), outputs)) {
+    record[kOutputs].push_back(ToJson(file));
   }
   record["result"] = result;
   state->Write(stage.name, record);
@@ -120,11 +124,11 @@ void FinishStage(const Stage& stage, const Json& result,
 
 void RemoveStaleStages(const std::string& prefix, size_t first, const std::filesystem::path& folder,
                        WorkspaceState* state) {
-  std::error_code ignored;
   for (size_t k = first; k < first + kMaxModels; ++k) {
-    if (!state->Read(prefix + std::to_string(k))) continue;  // failed, between two that did not
-    state->Forget(prefix + std::to_string(k));
-    std::filesystem::remove_all(folder / std::to_string(k), ignored);
+    const std::string number = std::to_string(k);
+    if (!state->Read(prefix + number)) continue;  // failed, between two that did not
+    state->Forget(prefix + number);
+    RemoveOutputs(folder / number);
   }
 }
 

@@ -1,6 +1,6 @@
 // A stage of a long run is done once. What it was made from, what came out of it and which files
-// hold that stand in WORKSPACE/state/<stage>.json, one small atomic file a stage; the database
-// alone is not enough, since COLMAP opens it without synchronisation.
+// hold that, each with its size and hash, stand in WORKSPACE/state/<stage>.json, one small atomic
+// file a stage; the database alone is not enough, since COLMAP opens it without synchronisation.
 #pragma once
 
 #include <filesystem>
@@ -11,15 +11,19 @@
 #include <utility>
 #include <vector>
 
+#include "colmap_seapoint/io/outputs/output_folder.h"
+
 namespace colmap_seapoint {
 
-// The records of one workspace's stages. One run at a time holds the workspace's lock.
+// The records of one workspace's stages, and what in the workspace is ours.
 class WorkspaceState {
  public:
   // Creates the folder and holds its lock until the end of this object (and of any program that
-  // a killed run had started). Throws Error when another run works there.
-  explicit WorkspaceState(const std::filesystem::path& workspace);
-  ~WorkspaceState();
+  // a killed run had started). What an earlier version made there is taken for ours
+  // (earlier_outputs.h). state/ and `outputs` become ours: names of files and folders directly in
+  // the workspace. Throws Error when another run works there, or one of these is somebody else's.
+  explicit WorkspaceState(const std::filesystem::path& workspace,
+                          std::vector<std::string> outputs = {});
   WorkspaceState(const WorkspaceState&) = delete;
   WorkspaceState& operator=(const WorkspaceState&) = delete;
 
@@ -30,13 +34,15 @@ class WorkspaceState {
   void Forget(const std::string& stage);
 
   // Absolute. Outputs are remembered relative to it, so that a workspace can be moved.
-  const std::filesystem::path& Workspace() const { return workspace_; }
+  const std::filesystem::path& Workspace() const { return folder_.Path(); }
+  // Holds the records. All in it is ours.
+  std::filesystem::path StateFolder() const;
+  OutputFolder* Folder() { return &folder_; }
 
  private:
   std::filesystem::path PathOf(const std::string& stage) const;
 
-  std::filesystem::path workspace_, folder_;
-  int lock_ = -1;
+  OutputFolder folder_;
 };
 
 // Names a stage and all that its result depends on.
@@ -48,7 +54,7 @@ struct Stage {
 };
 
 // What a stage gives: a value that is remembered, and the files or folders that hold the rest. When
-// one of them is gone, the stage counts as not done.
+// a file of them is gone, or no longer holds what it held, the stage counts as not done.
 template <typename Result>
 struct StageOutput {
   Result result;
@@ -59,7 +65,8 @@ struct StageOutput {
 std::string StageFingerprint(const Stage& stage);
 
 // The record of a stage that was done from the same inputs by the same version, and whose outputs
-// are all there.
+// are all there as they were; says which one is not. Records of earlier versions tell no more of
+// an output than that it was there. Cost: a read of every output.
 std::optional<nlohmann::ordered_json> ReadIfDone(const WorkspaceState& state, const Stage& stage);
 
 // The result of such a stage; nullopt when it has to be done.
@@ -91,7 +98,7 @@ Result RunStage(WorkspaceState* state, const Stage& stage,
 }
 
 // Forgets the stages <prefix><k> from `first` on, which an earlier run left that had found more
-// models, and removes their folders <k> below `folder`.
+// models, and removes what of theirs is in the folders <k> below `folder`.
 void RemoveStaleStages(const std::string& prefix, size_t first, const std::filesystem::path& folder,
                        WorkspaceState* state);
 

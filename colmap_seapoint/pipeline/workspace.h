@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace colmap_seapoint {
 
@@ -16,6 +17,13 @@ struct Workspace {
         scaled(root / "sparse_scaled"),
         dense(root / "dense"),
         report(root / "report") {}
+
+  // What the chain makes directly in the root: checked, and made ours, before anything else is
+  // done. The database's are there while it is begun anew, those of sparse while the mapper runs.
+  std::vector<std::string> Names() const {
+    return {"database.db",   "database.db.tmp", "sparse", "sparse.tmp",
+            "sparse_scaled", "dense",           "report"};
+  }
 
   std::filesystem::path images, root, database, sparse, scaled, dense, report;
 };

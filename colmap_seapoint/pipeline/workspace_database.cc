@@ -45,11 +45,11 @@ void CopyFeatures(const ColmapDatabase& from, const std::vector<RegisteredPictur
   transaction.Commit();
 }
 
-// Beside its place and renamed: a run that is killed meanwhile begins anew.
-void BeginAnew(const fs::path& path, const std::vector<ReadablePicture>& pictures,
-               const ImageReaderOptions& reader) {
+// Made in the folder of the records and renamed: a run that is killed meanwhile begins anew.
+void BeginAnew(const fs::path& path, const fs::path& state_folder,
+               const std::vector<ReadablePicture>& pictures, const ImageReaderOptions& reader) {
   LogInfo("Pictures, cameras or matching changed: the database is begun anew, SeaPoints are kept");
-  const fs::path fresh_path = path.string() + ".tmp";
+  const fs::path fresh_path = state_folder / "fresh.db";
   RemoveDatabase(fresh_path);
   {
     const ColmapDatabase old(path, ColmapDatabase::Mode::kReadWrite);  // plays its journal in
@@ -69,15 +69,9 @@ ColmapDatabase OpenWorkspaceDatabase(const fs::path& database_path,
                                      const std::vector<ReadablePicture>& pictures,
                                      const ImageReaderOptions& reader, const Stage& stage,
                                      WorkspaceState* state) {
-  // The record also says that the database is ours: it is never forgotten, only replaced.
+  state->Folder()->Claim({database_path.filename().string()});
   if (!ReadIfDone(*state, stage)) {
-    if (fs::exists(database_path)) {
-      if (!state->Read(stage.name)) {
-        throw Error(database_path.string(), "was not made by automatic_reconstructor",
-                    "choose another --workspace_path: a database is never overwritten");
-      }
-      BeginAnew(database_path, pictures, reader);
-    }
+    if (fs::exists(database_path)) BeginAnew(database_path, state->StateFolder(), pictures, reader);
     FinishStage(stage, nullptr, {}, state);
   }
   return ColmapDatabase(database_path, ColmapDatabase::Mode::kCreateIfMissing);

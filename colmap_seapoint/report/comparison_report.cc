@@ -21,7 +21,7 @@ Json CloudJson(const std::string& path, const OneWay& way, const ComparisonRepor
   json["path"] = path;
   json["points"] = way.num_points;
   json["spacing"] = way.spacing;
-  json["spacing_of_points"] = way.num_in_spacing;
+  json[kComparisonJsonWords] = way.num_in_spacing;
   json["area"] = way.area;
   json["points_per_unit2"] = points / way.area;
   json["points_per_cm2"] = report.unit_in_metres ? Json(points / (1e4 * way.area)) : Json(nullptr);

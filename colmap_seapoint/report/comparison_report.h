@@ -13,7 +13,9 @@ struct ComparisonReport {
   CloudComparison comparison;
 };
 
-// Every figure with its definition beside it; figures that do not exist are null.
+// Every figure with its definition beside it; figures that do not exist are null. Holds
+// kComparisonJsonWords near its beginning, as nobody else's file does.
+inline constexpr char kComparisonJsonWords[] = "spacing_of_points";
 std::string ComparisonJson(const ComparisonReport& report);
 
 // The same for a person, on one screen.

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "colmap_seapoint/report/debug_canvas.h"
 #include "densify/densify_pair.h"
@@ -99,7 +100,7 @@ std::string WithPercent(const std::string& name, double share) {
 
 void DebugFigures::Write(const PairDebug& pair) {
   ++num_pairs_;
-  std::filesystem::create_directories(folder_);
+  if (num_pairs_ == 1) CheckWritableDir(folder_);
   const bool has_previous = pair.previous_picture != nullptr;
   if (has_previous) WriteInfluenceAreas(pair);
   WriteMasks(pair);

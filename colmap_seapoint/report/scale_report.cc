@@ -165,7 +165,7 @@ void WriteScaleJson(const std::filesystem::path& path, const ScaleMeasurements& 
 
 void WriteScaleCsv(const std::filesystem::path& path, const ScaleMeasurements& measurements,
                    const SimilarityEstimate& estimate) {
-  std::string text = "kind,name,used,dx_m,dy_m,dz_m,residual_m,sigma_m,model_length,length_m\n";
+  std::string text = std::string(kScaleCsvHeader) + "\n";
   for (size_t i = 0; i < estimate.position_residuals.size(); ++i) {
     const Eigen::Vector3d& r = estimate.position_residuals[i];
     text += "position," + Quoted(measurements.position_names[i]) +

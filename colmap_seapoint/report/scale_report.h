@@ -20,7 +20,10 @@ std::string ScaleLine(const SimilarityEstimate& estimate);
 void WriteScaleJson(const std::filesystem::path& path, const ScaleMeasurements& measurements,
                     const SimilarityEstimate& estimate);
 
-// One row a measurement: kind,name,used,dx_m,dy_m,dz_m,residual_m,sigma_m,model_length,length_m.
+inline constexpr char kScaleCsvHeader[] =
+    "kind,name,used,dx_m,dy_m,dz_m,residual_m,sigma_m,model_length,length_m";
+
+// kScaleCsvHeader, then one row a measurement.
 // Residuals are model minus measured; a field is empty where it means nothing. Atomic.
 void WriteScaleCsv(const std::filesystem::path& path, const ScaleMeasurements& measurements,
                    const SimilarityEstimate& estimate);

@@ -39,7 +39,7 @@ endif()
 # only the headers that a room names as its public ones do.
 set(exported_targets
   seapoint_flags seapoint_simd seapoint_base
-  seapoint_files seapoint_image seapoint_cloud seapoint_colmap seapoint_io
+  seapoint_files seapoint_outputs seapoint_image seapoint_cloud seapoint_colmap seapoint_io
   seapoint_feature_kernels seapoint_feature_detector seapoint_feature_descriptor
   seapoint_feature_matching seapoint_feature_retrieval seapoint_feature
   seapoint_densify_kernels seapoint_densify_match seapoint_densify_overlap seapoint_densify_cloud

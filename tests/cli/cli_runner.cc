@@ -134,6 +134,21 @@ std::map<std::string, std::string> ReadTree(const fs::path& folder) {
   return tree;
 }
 
+bool IsLeftover(const std::filesystem::path& path) {
+  const std::string name = path.filename().string();
+  const bool is_temporary = name.rfind(".seapoint_", 0) == 0 && path.extension() == ".tmp";
+  return is_temporary || name == ".colmap_seapoint.lock";
+}
+
+bool HoldsTemporaryFile(const std::filesystem::path& folder) {
+  std::error_code error;  // what vanishes meanwhile
+  std::filesystem::recursive_directory_iterator entry(folder, error), end;
+  for (; !error && entry != end; entry.increment(error)) {
+    if (IsLeftover(entry->path()) && entry->path().extension() == ".tmp") return true;
+  }
+  return false;
+}
+
 bool ProcessIsAlive(pid_t process) {
   // A zombie that nobody has waited for is dead.
   std::ifstream status("/proc/" + std::to_string(process) + "/stat");

@@ -58,6 +58,12 @@ void WriteBytes(const std::filesystem::path& path, const std::string& bytes);
 // Relative path -> bytes of every file below `folder`.
 std::map<std::string, std::string> ReadTree(const std::filesystem::path& folder);
 
+// Whether it is what a run that is killed leaves for the next one to clear away: a temporary file,
+// or a lock.
+bool IsLeftover(const std::filesystem::path& path);
+// Whether a temporary file of a run lies in `folder`, or below it.
+bool HoldsTemporaryFile(const std::filesystem::path& folder);
+
 bool ProcessIsAlive(pid_t process);
 
 }  // namespace colmap_seapoint

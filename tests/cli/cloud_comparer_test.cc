@@ -84,9 +84,9 @@ TEST_F(CloudComparer, LeavesDifferencesAndNothingElse) {
   EXPECT_EQ(picture.width, 1000);
   std::vector<std::string> names;
   for (const auto& item : ReadTree(folder_.Path())) names.push_back(item.first);
-  EXPECT_EQ(names, (std::vector<std::string>{"a.ply", "b.ply", "d/differences.png",
-                                             "d/input_to_reference.ply", "d/reference_to_input.ply",
-                                             "out.json"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"a.ply", "b.ply", "d/.colmap_seapoint",
+                                             "d/differences.png", "d/input_to_reference.ply",
+                                             "d/reference_to_input.ply", "out.json"}));
 }
 
 TEST_F(CloudComparer, BadInputIsNamed) {

@@ -57,8 +57,8 @@ TEST_F(DensifyResume, KilledAtManyMoments) {
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::set<std::string> whole = Names("whole");
-  ASSERT_EQ(whole, (std::set<std::string>{"fused.ply", "fused.ply.vis", "pairs.csv", "run.json",
-                                          "units.json"}));
+  ASSERT_EQ(whole, (std::set<std::string>{".colmap_seapoint", "fused.ply", "fused.ply.vis",
+                                          "pairs.csv", "run.json", "units.json"}));
   const auto expected = Clouds("whole");
   constexpr int kNumKills = 8;
   int num_killed = 0, num_half_way = 0;
@@ -68,8 +68,11 @@ TEST_F(DensifyResume, KilledAtManyMoments) {
     options.kill_when = [&](double now) { return now > moment; };
     if (Densify("killed", 2, options).signal_number == SIGKILL) {
       ++num_killed;
-      const std::set<std::string> left = Names("killed");
-      num_half_way += static_cast<int>(left.count("fused.ply.tmp"));
+      std::set<std::string> left;
+      for (const std::string& name : Names("killed")) {
+        if (!IsLeftover(name)) left.insert(name);
+      }
+      num_half_way += static_cast<int>(HoldsTemporaryFile(folder_ / "killed"));
       // A cloud under its final name is whole.
       for (const auto& [name, bytes] : Clouds("killed")) {
         EXPECT_TRUE(bytes == expected.at(name)) << name << " after " << moment << " s";
@@ -95,12 +98,12 @@ TEST_F(DensifyResume, KilledOverAFinishedRunKeepsItsCloud) {
   ASSERT_EQ(Densify("dense").exit_code, 0);
   const auto before = Clouds("dense");
   CliOptions options;
-  options.kill_when = [&](double) { return Names("dense").count("fused.ply.tmp") > 0; };
+  options.kill_when = [&](double) { return HoldsTemporaryFile(folder_ / "dense"); };
   ASSERT_EQ(Densify("dense", 2, options).signal_number, SIGKILL);
   EXPECT_TRUE(Clouds("dense") == before);
   ASSERT_EQ(Densify("dense", 1).exit_code, 0);
   EXPECT_TRUE(Clouds("dense") == before);
-  EXPECT_EQ(Names("dense").count("fused.ply.tmp"), 0u);
+  EXPECT_FALSE(HoldsTemporaryFile(folder_ / "dense"));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <set>
 
 #include "colmap_seapoint/base/progress.h"
@@ -48,6 +49,39 @@ class Program : public testing::Test {
 
   TemporaryFolder folder_;
 };
+
+// Of every command, so that a new one, or a new option, is not forgotten.
+TEST_F(Program, NoOutputIsAnInput) {
+  const auto is_path = [](const OptionInfo& option) {
+    return option.name.size() > 5 && option.name.compare(option.name.size() - 5, 5, "_path") == 0;
+  };
+  int num_pairs = 0;
+  for (size_t c = 0; c < AllCommands().size(); ++c) {
+    OptionTable names;
+    AllCommands()[c].bind(&names);
+    int num_outputs = 0;
+    for (const OptionInfo& output : names.Options()) {
+      if (!output.is_output) continue;
+      ++num_outputs;
+      for (const OptionInfo& input : names.Options()) {
+        if (!is_path(input) || input.name == output.name) continue;
+        const Command command = AllCommands()[c];
+        OptionTable table;
+        command.bind(&table);
+        for (const OptionInfo& option : table.Options()) {
+          if (option.required) table.Set(option.name, (folder_ / option.name).string());
+        }
+        table.Set(output.name, folder_.Path().string());
+        table.Set(input.name, (folder_.Path() / ".").string());
+        EXPECT_USAGE_ERROR(command.run(), " is the ");
+        EXPECT_TRUE(std::filesystem::is_empty(folder_.Path())) << command.name << output.name;
+        ++num_pairs;
+      }
+    }
+    EXPECT_GE(num_outputs, 1) << names.Options()[0].name;
+  }
+  EXPECT_GT(num_pairs, 30);
+}
 
 TEST_F(Program, CommandsHaveNamesSummariesAndFreshOptions) {
   std::set<std::string> names;

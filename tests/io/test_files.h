@@ -39,7 +39,10 @@ inline std::string ReadBytes(const std::filesystem::path& path) {
   return std::string(std::istreambuf_iterator<char>(stream), {});
 }
 
+// Creates its folder.
 inline void WriteBytes(const std::filesystem::path& path, const std::string& bytes) {
+  std::error_code ignored;  // the stream says it
+  std::filesystem::create_directories(path.parent_path(), ignored);
   std::ofstream stream(path, std::ios::binary);
   stream << bytes;
   ASSERT_TRUE(stream.good()) << path;

@@ -92,13 +92,12 @@ TEST_F(RunMapperTest, OneRoundThatFindsAll) {
   EXPECT_EQ(colmap_.NumCalls(kMapper), 1);
   EXPECT_EQ(NumModels(), 1u);
   EXPECT_EQ(NamesIn("0").size(), 10u);
-  EXPECT_FALSE(fs::exists(dir_ / "sparse.tmp"));
   EXPECT_TRUE(fs::exists(dir_ / "logs" / "mapper_1.log"));
   // All pictures: no list. The folder is the trial's own.
   EXPECT_EQ(colmap_.Arguments(kMapper, 1),
             (std::vector<std::string>{"mapper", "--database_path", (dir_ / "database.db").string(),
                                       "--image_path", (dir_ / "images").string(), "--output_path",
-                                      (dir_ / "sparse.tmp" / "trial_1").string(),
+                                      (dir_ / "sparse" / "trial_1").string(),
                                       "--Mapper.num_threads", "1"}));
   // Nothing else is left beside the model.
   for (const auto& entry : fs::directory_iterator(job_.output_path)) {
@@ -108,7 +107,7 @@ TEST_F(RunMapperTest, OneRoundThatFindsAll) {
 
 TEST_F(RunMapperTest, LeftoversOfEarlierRunsAreRemoved) {
   WriteSparseModelBinary(dir_ / "sparse" / "7", survey_);
-  WriteSparseModelBinary(dir_ / "sparse.tmp" / "trial_1" / "3", survey_);
+  WriteSparseModelBinary(dir_ / "sparse" / "trial_1" / "3", survey_);
   colmap_.Leaves(kMapper, 1, "0", survey_);
   Run();
   EXPECT_EQ(NumModels(), 1u);
@@ -178,7 +177,7 @@ TEST_F(RunMapperTest, NoModelAtAllIsAnErrorThatNamesTheLog) {
   const std::string text = ErrorOf([&] { Run(); });
   EXPECT_NE(text.find("the mapper found no model"), std::string::npos) << text;
   EXPECT_NE(text.find((dir_ / "logs" / "mapper_1.log").string()), std::string::npos) << text;
-  EXPECT_FALSE(fs::exists(job_.output_path));
+  EXPECT_EQ(NumModels(), 0u);
 }
 
 TEST_F(RunMapperTest, AMapperThatFailsWithAModelIsNotTrusted) {
@@ -186,7 +185,7 @@ TEST_F(RunMapperTest, AMapperThatFailsWithAModelIsNotTrusted) {
   colmap_.Ends(kMapper, 1, "disk full", 2);
   const std::string text = ErrorOf([&] { Run(); });
   EXPECT_NE(text.find("the mapper failed (exit code 2, 'disk full')"), std::string::npos) << text;
-  EXPECT_FALSE(fs::exists(job_.output_path));
+  EXPECT_EQ(NumModels(), 0u);
 }
 
 TEST_F(RunMapperTest, AFailureInALaterRoundLeavesWhatWasFound) {

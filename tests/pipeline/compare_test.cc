@@ -82,8 +82,8 @@ TEST_F(Compare, DifferencesAreWrittenWhereTheyAreAskedFor) {
   RunCloudComparer(options);
   std::set<std::string> names;
   for (const auto& [name, bytes] : ReadTree(folder_ / "differences")) names.insert(name);
-  EXPECT_EQ(names, (std::set<std::string>{"differences.png", "input_to_reference.ply",
-                                          "reference_to_input.ply"}));
+  EXPECT_EQ(names, (std::set<std::string>{".colmap_seapoint", "differences.png",
+                                          "input_to_reference.ply", "reference_to_input.ply"}));
   EXPECT_EQ(ReadCloud(folder_ / "differences/input_to_reference.ply").size(), 400u);
 }
 

@@ -46,8 +46,8 @@ class DensifyModelTest : public StripSurvey {
 
 TEST_F(DensifyModelTest, WritesCloudTableUnitsAndReport) {
   const RunReport report = DensifyModel(Options(), nullptr);
-  EXPECT_EQ(Files(), (std::set<std::string>{"fused.ply", "fused.ply.vis", "pairs.csv", "run.json",
-                                            "units.json"}));
+  EXPECT_EQ(Files(), (std::set<std::string>{".colmap_seapoint", "fused.ply", "fused.ply.vis",
+                                            "pairs.csv", "run.json", "units.json"}));
   EXPECT_EQ(report.command, "partial_densifier");
   EXPECT_EQ(report.images_in, kNumPictures);
   EXPECT_EQ(report.images_used, kNumPictures);
@@ -192,7 +192,8 @@ TEST_F(DensifyModelTest, NoPointIsAReportThatSaysWhy) {
   EXPECT_EQ(report.points, 0);
   EXPECT_EQ(report.pairs, 0);
   EXPECT_EQ(report.images_used, 0);
-  EXPECT_EQ(Files(), (std::set<std::string>{"pairs.csv", "run.json", "units.json"}));
+  EXPECT_EQ(Files(),
+            (std::set<std::string>{".colmap_seapoint", "pairs.csv", "run.json", "units.json"}));
   // Every row ends with a reason.
   std::istringstream rows(ReadBytes(folder_ / "out/pairs.csv"));
   std::string row;

@@ -59,7 +59,8 @@ TEST_F(PlanMappingTest, NamesWorkspaceAndProgram) {
   const fs::path root = folder_ / "ws";
   EXPECT_EQ(plan.job.database_path, root / "database.db");
   EXPECT_EQ(plan.job.image_path, Images());
-  EXPECT_EQ(plan.job.output_path, root / "sparse");
+  EXPECT_EQ(plan.job.output_path, root / "sparse.tmp");
+  EXPECT_EQ(plan.sparse, root / "sparse");
   EXPECT_EQ(plan.job.log_folder, root / "report");
   EXPECT_TRUE(plan.job.pictures.empty());
   EXPECT_FALSE(fs::exists(root));  // a plan writes nothing

@@ -34,7 +34,7 @@ class Reconstruct : public StripSurvey {
   // What the untied pictures were found to be.
   std::set<std::string> SecondChance() const {
     const auto record = nlohmann::json::parse(ReadBytes(Root() / "state/second_chance.json"));
-    return record["result"].get<std::set<std::string>>();
+    return record["result"]["untied"].get<std::set<std::string>>();
   }
 };
 

@@ -57,9 +57,14 @@ class ScaleModelsTest : public StripSurvey {
             model.images[0].cam_from_world.OriginInSource())
         .norm();
   }
-  // Leaves a mark in a scaled model that is gone when it is made anew.
-  void Mark(int k) const { WriteBytes(Space().scaled / std::to_string(k) / "mark", ""); }
-  bool IsMarked(int k) const { return fs::exists(Space().scaled / std::to_string(k) / "mark"); }
+  // Makes a scaled model older than it is; true as long as it was not made anew.
+  void Mark(int k) const {
+    fs::last_write_time(Space().scaled / std::to_string(k) / "images.bin", fs::file_time_type());
+  }
+  bool IsMarked(int k) const {
+    return fs::last_write_time(Space().scaled / std::to_string(k) / "images.bin") ==
+           fs::file_time_type();
+  }
 };
 
 TEST_F(ScaleModelsTest, WithoutSourcesNothingHappens) {

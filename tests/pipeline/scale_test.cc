@@ -146,7 +146,7 @@ TEST_F(ScaleModelTest, KeepsTheFormAndTakesTheCloudAlong) {
 TEST_F(ScaleModelTest, NeverOverSomebodysModel) {
   WriteSparseModelBinary(folder_ / "out", model_);
   const auto before = ReadTree(folder_ / "out");
-  EXPECT_ERROR(ScaleModel(WithBar()), "holds a model that model_scaler did not write");
+  EXPECT_ERROR(ScaleModel(WithBar()), "cameras.bin: was not made by colmap_seapoint");
   EXPECT_EQ(ReadTree(folder_ / "out"), before);
   // Its own it may replace.
   fs::remove_all(folder_ / "out");

@@ -283,6 +283,8 @@ class StaleStages : public StageRunner {
   // A record and a folder.
   void Finish(const std::string& prefix, int k, WorkspaceState* state) const {
     const std::string number = std::to_string(k);
+    OutputFolder folder(Path() / prefix / number, "--path");
+    folder.Claim({"file"});
     WriteBytes(Path() / prefix / number / "file", "x");
     FinishStage({prefix + number, "1", "", ""}, k, {Path() / prefix / number}, state);
   }

@@ -77,7 +77,7 @@ TEST_F(WorkspaceDatabase, AnotherStageBeginsItAnewWithTheSeaPoints) {
     EXPECT_EQ(after.at(table), before.at(table)) << table;
   }
   EXPECT_EQ(Unsound(Path()), std::vector<std::string>());
-  EXPECT_FALSE(fs::exists(Path().string() + ".tmp"));
+  EXPECT_FALSE(fs::exists(Root() / "state/fresh.db"));
   // That is its state now.
   const std::string again = LogOf([&] { Open("b"); });
   EXPECT_EQ(again.find("begun anew"), std::string::npos) << again;
@@ -137,7 +137,7 @@ TEST_F(WorkspaceDatabase, SomebodyElsesIsRefusedAndNotTouched) {
   fs::create_directories(Root());
   fs::copy_file(DatabasePath(), Path());
   const std::string before = ReadBytes(Path());
-  EXPECT_ERROR(Open("a"), "was not made by automatic_reconstructor");
+  EXPECT_ERROR(Open("a"), "was not made by colmap_seapoint");
   EXPECT_ERROR(Open("a"), "--workspace_path");
   EXPECT_EQ(ReadBytes(Path()), before);
   EXPECT_FALSE(fs::exists(Root() / "state/database.json"));
@@ -169,11 +169,11 @@ TEST_F(WorkspaceDatabase, GoesOnAfterItWasTakenAway) {
 
 TEST_F(WorkspaceDatabase, LeftoversOfAKilledRunAreReplaced) {
   OpenAndFill("a");
-  WriteBytes(Path().string() + ".tmp", "half a database");
-  WriteBytes(Path().string() + ".tmp-journal", "and its journal");
+  WriteBytes(Root() / "state/fresh.db", "half a database");
+  WriteBytes(Root() / "state/fresh.db-journal", "and its journal");
   EXPECT_EQ(ReadImages(Open("b")).size(), 3u);
-  EXPECT_FALSE(fs::exists(Path().string() + ".tmp"));
-  EXPECT_FALSE(fs::exists(Path().string() + ".tmp-journal"));
+  EXPECT_FALSE(fs::exists(Root() / "state/fresh.db"));
+  EXPECT_FALSE(fs::exists(Root() / "state/fresh.db-journal"));
 }
 
 TEST_F(WorkspaceDatabase, FingerprintIsOfPicturesCamerasAndSeaPoints) {

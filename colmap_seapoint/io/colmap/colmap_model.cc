@@ -194,6 +194,19 @@ bool IsSparseModel(const std::filesystem::path& dir) {
   return HasAllFiles(dir, ".bin") || HasAllFiles(dir, ".txt");
 }
 
+std::vector<std::string> ModelFileNames() {
+  std::vector<std::string> names = {"project.ini"};
+  for (const std::string stem : {"cameras", "images", "points3D", "rigs", "frames"}) {
+    for (const char* extension : {".bin", ".txt"}) names.push_back(stem + extension);
+  }
+  return names;
+}
+
+bool IsModelFile(const std::string& name) {
+  const std::vector<std::string> names = ModelFileNames();
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 SparseModel ReadSparseModel(const std::filesystem::path& dir, ModelContent content) {
   ModelBeingRead read;
   read.content = content;

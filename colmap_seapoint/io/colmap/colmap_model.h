@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "colmap_seapoint/base/sparse_model.h"
@@ -38,6 +39,10 @@ std::vector<Frame> ReadFrames(const std::filesystem::path& dir, const SparseMode
 
 // True when `dir` holds cameras/images/points3D in either form.
 bool IsSparseModel(const std::filesystem::path& dir);
+
+// The files that a model's folder may hold, in either form, with COLMAP's record of its options.
+std::vector<std::string> ModelFileNames();
+bool IsModelFile(const std::string& name);
 
 // Write all three files; each is written under a temporary name and renamed. `dir` is created.
 void WriteSparseModelText(const std::filesystem::path& dir, const SparseModel& model);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/io/files/temporary_file.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -52,31 +53,28 @@ void SyncParentFolder(const std::filesystem::path& path) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(const std::filesystem::path& path)
-    : path_(path), temporary_path_(path.string() + ".tmp") {
+AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path_, ignored)) Fail(path_, "is a folder", EISDIR);
-  // A leftover of a killed run, or a link put there by someone else: never write through it.
-  if (unlink(temporary_path_.c_str()) != 0 && errno != ENOENT) {
-    Fail(temporary_path_, "cannot be removed", errno);
-  }
-  const int descriptor =
-      open(temporary_path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor < 0) Fail(path_, "cannot be created", errno);
-  file_ = fdopen(descriptor, "wb");
+  const std::filesystem::path parent = path_.parent_path();
+  const TemporaryFile temporary = CreateTemporaryFile(parent.empty() ? "." : parent);
+  if (temporary.descriptor < 0) Fail(path_, "cannot be created", errno);
+  temporary_path_ = temporary.path;
+  file_ = fdopen(temporary.descriptor, "wb");
   if (file_ == nullptr) {
     const int error_number = errno;
-    close(descriptor);
     unlink(temporary_path_.c_str());
+    close(temporary.descriptor);
     Fail(path_, "cannot be created", error_number);
   }
   std::setvbuf(file_, nullptr, _IOFBF, kBufferBytes);
 }
 
+// It is closed last, since its lock protects the temporary file until then.
 AtomicFile::~AtomicFile() {
   if (file_ == nullptr) return;
-  std::fclose(file_);
   unlink(temporary_path_.c_str());
+  std::fclose(file_);
 }
 
 void AtomicFile::Write(const void* data, size_t size) {
@@ -100,13 +98,12 @@ void AtomicFile::Commit() {
   if (std::fflush(file_) != 0 || fsync(fileno(file_)) != 0) {
     Fail(path_, "cannot be written", errno);
   }
-  std::FILE* const file = file_;
-  file_ = nullptr;
-  if (std::fclose(file) != 0 || std::rename(temporary_path_.c_str(), path_.c_str()) != 0) {
-    const int error_number = errno;
-    unlink(temporary_path_.c_str());
-    Fail(path_, "cannot be put in its place", error_number);
+  if (std::rename(temporary_path_.c_str(), path_.c_str()) != 0) {
+    Fail(path_, "cannot be put in its place", errno);
   }
+  // fsync() has said that all is on the disk: closing has nothing to add.
+  std::fclose(file_);
+  file_ = nullptr;
   SyncParentFolder(path_);
 }
 
@@ -146,13 +143,13 @@ void CheckWritableDir(const std::filesystem::path& dir) {
     std::filesystem::create_directories(dir, error);
     if (error) Fail(dir, "the folder cannot be created", error.value());
   }
-  std::string probe = (dir / ".seapoint_probe_XXXXXX").string();
-  const int descriptor = mkstemp(probe.data());
-  if (descriptor < 0) Fail(dir, "no file can be created in this folder", errno);
-  const bool written = write(descriptor, "probe", 5) == 5;
+  RemoveLeftovers(dir);
+  const TemporaryFile probe = CreateTemporaryFile(dir);
+  if (probe.descriptor < 0) Fail(dir, "no file can be created in this folder", errno);
+  const bool written = write(probe.descriptor, "probe", 5) == 5;
   const int error_number = errno;
-  close(descriptor);
-  unlink(probe.c_str());
+  unlink(probe.path.c_str());
+  close(probe.descriptor);
   if (!written) Fail(dir, "no file can be written in this folder", error_number);
 }
 

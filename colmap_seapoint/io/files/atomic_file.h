@@ -12,7 +12,8 @@ namespace colmap_seapoint {
 
 class AtomicFile {
  public:
-  // Creates "<path>.tmp". Throws Error (where, why, remedy) when it cannot.
+  // Creates a file of a random name beside it (temporary_file.h). Throws Error (where, why, remedy)
+  // when it cannot.
   explicit AtomicFile(const std::filesystem::path& path);
   ~AtomicFile();  // removes the temporary file unless Commit() was called
   AtomicFile(const AtomicFile&) = delete;
@@ -38,7 +39,8 @@ void WriteTextFile(const std::filesystem::path& path, const std::string& text);
 // itself, by a link: a copy over the original is never meant.
 void CopyFileAtomically(const std::filesystem::path& from, const std::filesystem::path& to);
 
-// Throws Error when no file could be created in `dir` (which is created when missing).
+// Throws Error when no file could be created in `dir` (which is created when missing). What killed
+// runs left in it is removed (temporary_file.h).
 void CheckWritableDir(const std::filesystem::path& dir);
 
 }  // namespace colmap_seapoint

@@ -142,6 +142,12 @@ SubprocessResult WaitForGuard(pid_t guard) {
   return result;
 }
 
+// Anew, so that a link of that name is replaced and what it leads to is not written over.
+int CreateLog(const std::filesystem::path& path) {
+  unlink(path.c_str());
+  return open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+}
+
 void WriteLog(int log, const std::filesystem::path& path, const char* data, size_t size) {
   while (log >= 0 && size > 0) {
     const ssize_t written = write(log, data, size);
@@ -204,9 +210,7 @@ SubprocessResult RunSubprocess(const std::filesystem::path& program,
                                const std::filesystem::path& log_path,
                                const std::function<void(const std::string&)>& on_line) {
   LaunchPlan plan = MakePlan(program, arguments);
-  const FileDescriptor log(
-      log_path.empty() ? -1
-                       : open(log_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+  const FileDescriptor log(log_path.empty() ? -1 : CreateLog(log_path));
   if (!log_path.empty() && log.Get() < 0) {
     throw Error(log_path.string(), std::string("cannot be created (") + std::strerror(errno) + ")",
                 "choose a folder that you may write to");

@@ -21,8 +21,8 @@ struct SubprocessResult {
 };
 
 // Runs `program` with `arguments` until it ends; stdin is empty, the environment is ours with
-// QT_QPA_PLATFORM=offscreen. stdout and stderr together go to `log_path` (truncated first; empty =
-// nowhere) and line by line, without the newline, to `on_line`.
+// QT_QPA_PLATFORM=offscreen. stdout and stderr together go to `log_path` (a new file in place of
+// what has that name; empty = nowhere) and line by line, without the newline, to `on_line`.
 //
 // The program and whatever it starts form a process group of their own, which a guard process
 // kills as soon as we die, even by kill -9. Call it from a thread that lives until we end.
