@@ -92,6 +92,8 @@ ExifInfo ReadExif(const std::filesystem::path& path, ImageSize size) {
     image->readMetadata();
     exif = image->exifData();
   } catch (const std::exception&) {  // Exiv2's own errors among them
+    // A disk that fails looks to it like damaged EXIF: read once more, where it is told apart.
+    ReadAll(OpenImageFile(path));
     exif.clear();
   }
   ExifInfo info;

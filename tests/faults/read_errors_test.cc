@@ -1,0 +1,108 @@
+// A disk that fails to give a file: never the file's end, never the file's fault.
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
+#include "tests/faults/faults_fixture.h"
+
+namespace colmap_seapoint {
+namespace {
+
+constexpr char kSaid[] = "Input/output error";
+
+CliOptions FailingFrom(const std::string& path_end, int64_t offset = 0) {
+  CliOptions options;
+  options.failing_read = FailingRead{path_end, offset};
+  return options;
+}
+
+class ReadErrors : public Faults {
+ protected:
+  // The command must fail, having met the failure, and say what the system said.
+  void ExpectSaid(const Arguments& arguments, const std::string& path_end, int64_t offset = 0) {
+    const CliResult result = Run(arguments, FailingFrom(path_end, offset));
+    EXPECT_GT(result.num_failed_reads, 0) << path_end;
+    ExpectFailure(result, kSaid);
+    EXPECT_NE(result.LastErrorLine().find(path_end), std::string::npos) << result.Text();
+  }
+};
+
+TEST_F(ReadErrors, ListsAndProjectFiles) {
+  std::string names;
+  while (names.size() < 100000) names += "# a comment that fills the list up\nimg1.png\n";
+  WriteBytes(folder_ / "list.txt", "img1.png\nimg2.png\n" + names + "img3.png\n");
+  const Arguments listed = {"feature_extractor", "--database_path", Path("d.db"),
+                            "--image_path",      Path("images"),    "--image_list_path",
+                            Path("list.txt")};
+  ExpectSaid(listed, "/list.txt");
+  ExpectSaid(listed, "/list.txt", 1);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "d.db"));
+  std::string comments;
+  while (comments.size() < 100000) comments += "# a comment that fills the file up\n";
+  WriteBytes(folder_ / "p.ini", comments + "random_seed = 5\n");
+  for (const int64_t offset : {0, 1}) {
+    const CliResult result =
+        Run(Extract(), FailingFrom("/p.ini", offset), {"--project_path", Path("p.ini")});
+    EXPECT_GT(result.num_failed_reads, 0);
+    ExpectFailure(result, kSaid);
+  }
+}
+
+TEST_F(ReadErrors, CloudsAndWhatLiesBesideThem) {
+  ASSERT_EQ(Run(Densify()).exit_code, 0);
+  WriteBytes(folder_ / "positions.csv",
+             "image,x,y,z\nimg1.png,0,0,0\nimg2.png,1,0,0\nimg3.png,2,0.1,0\n");
+  const Arguments scale = {"model_scaler",          "--input_path",     Path("model"),
+                           "--output_path",         Path("scaled"),     "--cloud_path",
+                           Path("dense/fused.ply"), "--positions_path", Path("positions.csv")};
+  const CliResult whole = Run(scale);
+  ExpectSaid(scale, "/fused.ply.vis");
+  ExpectSaid(scale, "/fused.ply.vis", 1);
+  ExpectSaid(scale, "/fused.ply", 1);
+  ExpectSaid(scale, "/positions.csv");
+  ExpectSaid(scale, "/points3D.bin");
+  ExpectSaid(scale, "/images.bin");
+  ExpectSaid({"cloud_comparer", "--input_path", Path("dense/fused.ply"), "--reference_path",
+              Path("dense/fused.ply"), "--output_path", Path("c.json")},
+             "/fused.ply", 1);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "c.json"));
+  EXPECT_EQ(whole.exit_code, 0) << whole.Text();
+}
+
+TEST_F(ReadErrors, TheFacesOfAMesh) {
+  std::string mesh =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 20000\nproperty list uchar int vertex_indices\n"
+      "end_header\n0 0 0\n1 0 0\n0 1 0\n";
+  for (int i = 0; i < 20000; ++i) mesh += "3 0 1 2\n";
+  WriteBytes(folder_ / "mesh.ply", mesh);
+  WriteBytes(folder_ / "positions.csv",
+             "image,x,y,z\nimg1.png,0,0,0\nimg2.png,1,0,0\nimg3.png,2,0.1,0\n");
+  ExpectSaid({"model_scaler", "--input_path", Path("model"), "--output_path", Path("scaled"),
+              "--cloud_path", Path("mesh.ply"), "--positions_path", Path("positions.csv")},
+             "/mesh.ply", 100000);
+}
+
+TEST_F(ReadErrors, APictureIsNeitherEmptyNorDamaged) {
+  for (const int64_t offset : {0, 1}) {
+    const CliResult result =
+        Run(Extract("d" + std::to_string(offset) + ".db"), FailingFrom("/img2.png", offset));
+    EXPECT_GT(result.num_failed_reads, 0);
+    EXPECT_EQ(result.exit_code, 3) << result.Text();
+    EXPECT_NE(result.err.find(std::string("img2.png is left out: cannot be read (") + kSaid),
+              std::string::npos)
+        << result.Text();
+  }
+}
+
+TEST_F(ReadErrors, AHealthyDatabaseIsNotToBeDeleted) {
+  ASSERT_EQ(Run(Extract()).exit_code, 0);
+  for (const int64_t offset : {0, 4096, 40960}) {
+    const CliResult result = Run(Match(), FailingFrom("/d.db", offset));
+    EXPECT_GT(result.num_failed_reads, 0);
+    ExpectFailure(result, "disk");
+    EXPECT_EQ(result.err.find("delete"), std::string::npos) << result.Text();
+  }
+  EXPECT_EQ(Run(Match()).exit_code, 0);
+}
+
+}  // namespace
+}  // namespace colmap_seapoint
