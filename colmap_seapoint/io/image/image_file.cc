@@ -304,6 +304,11 @@ PictureFile::PictureFile(const std::filesystem::path& path) : path_(path) {
 
 std::string PictureFile::Hash() const { return HashBytes(bytes_.data(), bytes_.size()); }
 
+uint64_t PictureFile::BytesToDecode() const {
+  return colmap_seapoint::BytesToDecode(OpenImageBytes(path_, bytes_),
+                                        ReadHeader(OpenImageBytes(path_, bytes_)));
+}
+
 GrayImage PictureFile::DecodeGray() const {
   return DecodePlanes(OpenImageBytes(path_, bytes_), JpegContent::kLuma).luma;
 }

@@ -11,23 +11,25 @@
 namespace colmap_seapoint {
 namespace {
 
+constexpr size_t kHeaderBytes = 30;
+
 uint64_t LittleEndian(const uint8_t* bytes, int count) {
   uint64_t value = 0;
   for (int i = count - 1; i >= 0; --i) value = value << 8 | bytes[i];
   return value;
 }
 
-// OpenCV fills up what a truncated file lacks, or prints; so the length is checked before.
-bool IsWhole(const std::vector<uint8_t>& file) {
-  return file.size() >= 20 && file.size() - 8 >= LittleEndian(&file[4], 4);
-}
-
 // The sides stand in the first chunk: "VP8 " (a key frame of a film), "VP8L" (without loss), or
 // "VP8X" (with transparency, EXIF and so on, before one of the others).
-ImageHeader CheckHeader(const std::filesystem::path& path, const std::vector<uint8_t>& file) {
-  if (!IsWhole(file) || file.size() < 30) ThrowDamagedImage(path, "the file ends too early");
-  const std::string chunk(file.begin() + 12, file.begin() + 16);
-  const uint8_t* data = file.data() + 20;
+ImageHeader CheckHeader(const ImageSource& source) {
+  uint8_t head[kHeaderBytes];
+  // OpenCV fills up what a truncated file lacks, or prints; so the length is checked before.
+  if (std::fread(head, 1, sizeof(head), source.file.get()) != sizeof(head) ||
+      source.size - 8 < LittleEndian(head + 4, 4)) {
+    ThrowDamagedImage(source.path, "the file ends too early");
+  }
+  const std::string chunk(head + 12, head + 16);
+  const uint8_t* data = head + 20;
   uint64_t width = 0, height = 0;
   if (chunk == "VP8X") {
     width = LittleEndian(data + 4, 3) + 1;
@@ -41,7 +43,7 @@ ImageHeader CheckHeader(const std::filesystem::path& path, const std::vector<uin
     height = LittleEndian(data + 8, 2) & 0x3fff;
   }
   ImageHeader header;
-  header.size = CheckImageSize(path, width, height);
+  header.size = CheckImageSize(source.path, width, height);
   header.packing = Packing::kWebp;
   header.unpacked_bytes = width * height;
   header.bytes_per_pixel += 10;  // libwebp's and OpenCV's copies
@@ -50,9 +52,7 @@ ImageHeader CheckHeader(const std::filesystem::path& path, const std::vector<uin
 
 }  // namespace
 
-ImageHeader ReadWebpHeader(const ImageSource& source) {
-  return CheckHeader(source.path, ReadAll(source));
-}
+ImageHeader ReadWebpHeader(const ImageSource& source) { return CheckHeader(source); }
 
 // By OpenCV, which has libwebp.
 Image<uint8_t> DecodeWebp(const ImageSource& source) {
@@ -61,9 +61,9 @@ Image<uint8_t> DecodeWebp(const ImageSource& source) {
     return true;
   }();
   static_cast<void>(is_silent);
-  const std::vector<uint8_t> file = ReadAll(source);
-  const ImageHeader header = CheckHeader(source.path, file);
+  const ImageHeader header = CheckHeader(source);
   const MemoryShare share(BytesToDecode(source, header));
+  const std::vector<uint8_t> file = ReadAll(source);
   cv::Mat decoded;
   try {
     // Unchanged: the orientation is ignored too.
