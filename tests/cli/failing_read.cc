@@ -74,7 +74,7 @@ void ReadFailer::Watch(pid_t child) {
   thread_ = std::thread([this, listener] { Answer(listener); });
 }
 
-bool ReadFailer::MustFail(pid_t process, int number, const unsigned long long* arguments) const {
+bool ReadFailer::MustFail(pid_t process, int number, const unsigned long long* arguments) {
   const int descriptor = static_cast<int>(arguments[0]);
   const std::string path = PathOf(process, descriptor);
   const std::string& end = failure_.path_end;
@@ -83,7 +83,8 @@ bool ReadFailer::MustFail(pid_t process, int number, const unsigned long long* a
   }
   const int64_t offset =
       number == SYS_pread64 ? static_cast<int64_t>(arguments[3]) : OffsetOf(process, descriptor);
-  return offset >= failure_.from_offset;
+  if (offset < failure_.from_offset || num_met_++ < failure_.num_reads_before) return false;
+  return num_failed_ < failure_.max_failures;
 }
 
 // Until no process is left that could call.
@@ -95,7 +96,7 @@ void ReadFailer::Answer(int listener) {
     seccomp_notif_resp answer{};
     answer.id = call.id;
     if (MustFail(static_cast<pid_t>(call.pid), call.data.nr, call.data.args)) {
-      answer.error = -failure_.error_number;
+      answer.error = -EIO;
       ++num_failed_;
     } else {
       answer.flags = SECCOMP_USER_NOTIF_FLAG_CONTINUE;

@@ -12,9 +12,10 @@
 namespace colmap_seapoint {
 
 struct FailingRead {
-  std::string path_end;     // of the file, as "/list.txt"
-  int64_t from_offset = 0;  // reads that begin here or behind fail ...
-  int error_number = 5;     // ... with this: EIO
+  std::string path_end;        // of the file, as "/list.txt"
+  int64_t from_offset = 0;     // reads that begin here or behind fail with EIO,
+  int max_failures = 1 << 30;  // as often; then they succeed,
+  int num_reads_before = 0;    // after so many of them that succeed
 };
 
 // One for each child.
@@ -31,11 +32,12 @@ class ReadFailer {
 
  private:
   void Answer(int listener);
-  bool MustFail(pid_t process, int number, const unsigned long long* arguments) const;
+  bool MustFail(pid_t process, int number, const unsigned long long* arguments);
 
   const FailingRead failure_;
   int pipe_[2];
   std::thread thread_;
+  int num_met_ = 0;
   std::atomic<int> num_failed_{0};
 };
 

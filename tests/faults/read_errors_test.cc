@@ -1,6 +1,9 @@
 // A disk that fails to give a file: never the file's end, never the file's fault.
+#include <exiv2/exiv2.hpp>
+
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
+#include "colmap_seapoint/io/image/image_file.h"
 #include "tests/faults/faults_fixture.h"
 
 namespace colmap_seapoint {
@@ -8,9 +11,11 @@ namespace {
 
 constexpr char kSaid[] = "Input/output error";
 
-CliOptions FailingFrom(const std::string& path_end, int64_t offset = 0) {
+constexpr int kAlways = 1 << 30;
+
+CliOptions FailingFrom(const std::string& path_end, int64_t offset = 0, int times = kAlways) {
   CliOptions options;
-  options.failing_read = FailingRead{path_end, offset};
+  options.failing_read = FailingRead{path_end, offset, times};
   return options;
 }
 
@@ -95,13 +100,50 @@ TEST_F(ReadErrors, APictureIsNeitherEmptyNorDamaged) {
 
 TEST_F(ReadErrors, AHealthyDatabaseIsNotToBeDeleted) {
   ASSERT_EQ(Run(Extract()).exit_code, 0);
-  for (const int64_t offset : {0, 4096, 40960}) {
-    const CliResult result = Run(Match(), FailingFrom("/d.db", offset));
-    EXPECT_GT(result.num_failed_reads, 0);
-    ExpectFailure(result, "disk");
-    EXPECT_EQ(result.err.find("delete"), std::string::npos) << result.Text();
+  constexpr int64_t kPage = 4096;
+  const auto num_pages = static_cast<int64_t>(std::filesystem::file_size(folder_ / "d.db")) / kPage;
+  ASSERT_GT(num_pages, 30);
+  for (const int times : {1, kAlways}) {
+    for (int64_t page = 0; page < num_pages; page += 3) {
+      const CliResult result = Run(Match(), FailingFrom("/d.db", page * kPage, times));
+      EXPECT_GT(result.num_failed_reads, 0);
+      ExpectFailure(result, "disk");
+      EXPECT_EQ(result.err.find("delete"), std::string::npos) << page << ": " << result.Text();
+    }
   }
   EXPECT_EQ(Run(Match()).exit_code, 0);
+}
+
+// Where the disk fails once, when the EXIF is read, the lens must not be another one afterwards.
+TEST_F(ReadErrors, TheFocalLengthIsNotLost) {
+  const std::string path = Path("images/img1.jpg");
+  WriteImage(path, StripPicture(1));
+  {
+    const auto image = Exiv2::ImageFactory::open(path);
+    Exiv2::ExifData exif;
+    exif["Exif.Photo.FocalLengthIn35mmFilm"] = uint16_t{50};
+    image->setExifData(exif);
+    image->writeMetadata();
+  }
+  const double width = kStripWidth;
+  for (int num_reads_before = 0; num_reads_before < 6; ++num_reads_before) {
+    CliOptions options = FailingFrom("/img1.jpg", 0, 1);
+    options.failing_read->num_reads_before = num_reads_before;
+    const std::string database = "d" + std::to_string(num_reads_before) + ".db";
+    const CliResult result = Run(Extract(database), options);
+    EXPECT_EQ(result.num_failed_reads, 1) << num_reads_before;
+    if (result.exit_code == 3) {
+      EXPECT_NE(result.err.find("img1.jpg is left out: cannot be read"), std::string::npos);
+      continue;
+    }
+    EXPECT_EQ(result.exit_code, 0) << result.Text();
+    const ColmapDatabase read(folder_ / database, ColmapDatabase::Mode::kReadOnly);
+    double focal = 0;
+    for (const auto& [id, camera] : ReadCameras(read)) {
+      if (camera.has_prior_focal_length) focal = camera.FocalX();
+    }
+    EXPECT_NEAR(focal, 50.0 / 35.0 * width, 1e-6) << num_reads_before;
+  }
 }
 
 }  // namespace

@@ -48,10 +48,11 @@ std::string ImmutableUri(const std::string& path) {
   return uri + "?immutable=1";
 }
 
-// Whether quick_check found not a damaged page but one that could not be read: it says then
-// "... unable to get the page. error code=266", SQLite's code.
+// Whether quick_check found not a damaged page but one that could not be read: it says "failed to
+// get page 82", or "unable to get the page. error code=266" with SQLite's code.
 bool ReportsFailingDisk(const std::string& finding) {
   static constexpr char kCode[] = "error code=";
+  if (finding.find("failed to get page ") != std::string::npos) return true;
   const size_t place = finding.find(kCode);
   if (place == std::string::npos) return false;
   return (std::atoi(finding.c_str() + place + sizeof(kCode) - 1) & 0xff) == SQLITE_IOERR;
