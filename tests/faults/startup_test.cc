@@ -33,6 +33,16 @@ TEST_F(Faults, ResultsThatNobodyGets) {
   EXPECT_EQ(Run(Extract(), full).exit_code, 0);
 }
 
+// Who stops reading the log (`2>&1 | head -1`) does not end hours of work.
+TEST_F(Faults, ALogThatNobodyReads) {
+  std::string command = "(sleep 0.2; " SEAPOINT_PROGRAM;
+  for (const std::string& argument : Densify()) command += " '" + argument + "'";
+  command += " 2>&1; echo $? > " + Path("code") + ") | true";
+  EXPECT_EQ(RunProgram("/bin/sh", {"-c", command}).exit_code, 0);
+  EXPECT_EQ(ReadBytes(folder_ / "code"), "0\n");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "dense/fused.ply"));
+}
+
 TEST_F(Faults, AFileThatMayNotGrow) {
   CliOptions options;
   options.max_file_bytes = 20000;
