@@ -104,7 +104,7 @@ TEST_F(ReadErrors, AHealthyDatabaseIsNotToBeDeleted) {
   const auto num_pages = static_cast<int64_t>(std::filesystem::file_size(folder_ / "d.db")) / kPage;
   ASSERT_GT(num_pages, 30);
   for (const int times : {1, kAlways}) {
-    for (int64_t page = 0; page < num_pages; page += 3) {
+    for (int64_t page = 0; page < num_pages; page += 5) {
       const CliResult result = Run(Match(), FailingFrom("/d.db", page * kPage, times));
       EXPECT_GT(result.num_failed_reads, 0);
       ExpectFailure(result, "disk");

@@ -261,10 +261,10 @@ bool CloudReader::Next(CloudVertex* vertex) {
                 "remove such points, e.g. in CloudCompare or MeshLab");
   }
   if (vertex->xyz.cwiseAbs().maxCoeff() > kMaxCoordinate) {
-    throw Error(
-        state.path,
-        "vertex " + std::to_string(state.num_read) + " lies farther than 1e15 from the origin",
-        "remove such points, e.g. in CloudCompare or MeshLab");
+    throw Error(state.path,
+                "vertex " + std::to_string(state.num_read) +
+                    " is too far away: a coordinate is beyond 1e15",
+                "remove such points, e.g. in CloudCompare or MeshLab");
   }
   ++state.num_read;
   return true;
