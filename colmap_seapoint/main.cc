@@ -9,8 +9,8 @@
 
 int main(int argc, char** argv) {
   using namespace colmap_seapoint;
-  SetUpProcess();
   try {
+    SetUpProcess();
     const ExitCode code = RunProgram({argv + 1, argv + argc});
     FinishOutput();
     return code;

@@ -79,8 +79,8 @@ void SetUpProcess() {
   SetUpSignals();
   KeepFreedMemory();
   // OpenCV's threads are oneTBB's, which fails where they cannot be started. The work is on
-  // threads of ours by then.
-  cv::setNumThreads(1);
+  // threads of ours by then. Not 1, with which oneTBB would be set up all the same.
+  cv::setNumThreads(0);
 }
 
 void FinishOutput() {
