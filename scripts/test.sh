@@ -47,5 +47,5 @@ part "formatting" check_format
 part "build, warnings are errors" build_release
 part "tests" ctest --preset release --parallel "$(nproc)" "$@"
 part "clang-tidy" scripts/check_tidy.sh
-part "core under ASan and UBSan" run_sanitized base io feature densify mapping
+part "core under ASan and UBSan" run_sanitized base system io feature densify mapping
 echo "== all passed: $SECONDS s" >&2

@@ -8,11 +8,12 @@ cd "$1" || exit 1
 
 read -r -d '' rooms <<'END'
 colmap_seapoint/base
-colmap_seapoint/io/files        colmap_seapoint/base
-colmap_seapoint/io/outputs      colmap_seapoint/base colmap_seapoint/io/files
-colmap_seapoint/io/image        colmap_seapoint/base colmap_seapoint/io/files
-colmap_seapoint/io/cloud        colmap_seapoint/base colmap_seapoint/io/files
-colmap_seapoint/io/colmap       colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/image
+colmap_seapoint/system          colmap_seapoint/base
+colmap_seapoint/io/files        colmap_seapoint/base colmap_seapoint/system
+colmap_seapoint/io/outputs      colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files
+colmap_seapoint/io/image        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files
+colmap_seapoint/io/cloud        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files
+colmap_seapoint/io/colmap       colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files colmap_seapoint/io/image
 feature/kernels                 colmap_seapoint/base
 feature/detector                colmap_seapoint/base feature/kernels
 feature/descriptor              colmap_seapoint/base feature/kernels
@@ -32,9 +33,9 @@ colmap_seapoint/mapping         colmap_seapoint/base colmap_seapoint/io/files co
 colmap_seapoint/pictures        colmap_seapoint/base colmap_seapoint/io/* feature feature/* densify densify/*
 colmap_seapoint/pairing         colmap_seapoint/base colmap_seapoint/io/* feature feature/*
 colmap_seapoint/report          colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/georeference densify densify/*
-colmap_seapoint/pipeline        colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/georeference colmap_seapoint/mapping colmap_seapoint/pictures colmap_seapoint/pairing colmap_seapoint/report feature feature/* densify densify/*
-colmap_seapoint/cli             colmap_seapoint/base colmap_seapoint/pipeline
-colmap_seapoint                 colmap_seapoint/base colmap_seapoint/cli
+colmap_seapoint/pipeline        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/georeference colmap_seapoint/mapping colmap_seapoint/pictures colmap_seapoint/pairing colmap_seapoint/report feature feature/* densify densify/*
+colmap_seapoint/cli             colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files colmap_seapoint/pipeline
+colmap_seapoint                 colmap_seapoint/base colmap_seapoint/system colmap_seapoint/cli
 END
 
 failed=0
@@ -74,8 +75,8 @@ only_in "SQLite is io's" '#include <sqlite3\.h>|io/files/sqlite\.h' 'colmap_seap
 only_in "OpenCV's decoders are io/image's" '#include <opencv2/imgcodecs' 'colmap_seapoint/io/image/'
 only_in "only cli prints results, only base/progress prints the log" \
   'std::(cout|cerr|clog)|[^sn]printf\(|(^|[^a-z_])puts\(' \
-  'colmap_seapoint/(cli/|base/progress|main\.cc)'
-only_in "files are io's, and the pipeline's records and locks (base/parallel asks /proc for room)" \
+  'colmap_seapoint/(cli/|base/progress|system/process_setup)'
+only_in "files are io's, and the pipeline's records and locks (base/parallel and system ask /proc)" \
   'std::[io]?fstream|[^a-zA-Z_]f?open\(|#include <fstream>' \
-  'colmap_seapoint/(io/|cli/command_line|pipeline/(stage_runner|earlier_outputs)|base/parallel\.cc)'
+  'colmap_seapoint/(io/|system/|base/parallel\.cc)'
 exit $failed

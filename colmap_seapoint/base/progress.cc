@@ -21,6 +21,32 @@ bool line_is_open = false;  // a rewriting progress line stands on the terminal
 
 bool IsEnabled(LogLevel level) { return static_cast<int>(level) <= log_level.load(); }
 
+// Names of files can hold any byte: control characters would split the line, colour it or move the
+// cursor, and are shown as they are written in C. The second half of those in two bytes of UTF-8
+// (U+0080 to U+009F) too.
+std::string Printable(const std::string& line) {
+  std::string text;
+  for (size_t i = 0; i < line.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(line[i]);
+    const auto next = static_cast<unsigned char>(i + 1 < line.size() ? line[i + 1] : 0);
+    const bool is_pair = byte == 0xc2 && next >= 0x80 && next < 0xa0;
+    char escaped[8];
+    if (byte == '\n') {
+      text += "\\n";
+    } else if (byte == '\t') {
+      text += "\\t";
+    } else if (byte < 0x20 || byte == 0x7f || is_pair) {
+      std::snprintf(escaped, sizeof(escaped), is_pair ? "\\u%04x" : "\\x%02x",
+                    is_pair ? next : byte);
+      text += escaped;
+      i += is_pair ? 1 : 0;
+    } else {
+      text += line[i];
+    }
+  }
+  return text;
+}
+
 // Callers hold stderr_mutex.
 void WipeOpenLine() {
   if (line_is_open) std::fputs("\r\033[K", stderr);
@@ -31,12 +57,12 @@ void LogLine(LogLevel level, const char* prefix, const std::string& line) {
   if (!IsEnabled(level)) return;
   std::lock_guard<std::mutex> lock(stderr_mutex);
   WipeOpenLine();
-  std::fprintf(stderr, "%s%s\n", prefix, line.c_str());
+  std::fprintf(stderr, "%s%s\n", prefix, Printable(line).c_str());
 }
 
 void RewriteLine(const std::string& line) {
   std::lock_guard<std::mutex> lock(stderr_mutex);
-  std::fprintf(stderr, "\r%s\033[K", line.c_str());
+  std::fprintf(stderr, "\r%s\033[K", Printable(line).c_str());
   std::fflush(stderr);
   line_is_open = true;
 }

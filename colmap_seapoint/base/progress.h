@@ -14,7 +14,8 @@ enum class LogLevel : int { kError = 0, kWarning = 1, kInfo = 2, kDebug = 3 };
 void SetLogLevel(LogLevel level);
 LogLevel GetLogLevel();
 
-// One line each, from any thread; a rewriting progress line is wiped first and comes back later.
+// One line each, from any thread, control characters in it made visible ("\n", "\x1b"); a rewriting
+// progress line is wiped first and comes back later.
 void LogError(const std::string& line);
 void LogWarning(const std::string& line);
 void LogInfo(const std::string& line);

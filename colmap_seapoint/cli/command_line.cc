@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <boost/program_options.hpp>
-#include <fstream>
 #include <map>
 #include <ostream>
 #include <set>
 #include <sstream>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/io/files/input_stream.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -115,8 +115,7 @@ bool AnyCommandKnows(const std::string& name) {
 
 OptionTexts ParseProjectFile(const Command& command, const OptionTable& table,
                              const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw Error(path, "the project file cannot be read", "check --project_path");
+  InputStream file(path);
   OptionTexts texts;
   try {
     const auto parsed = po::parse_config_file(file, po::options_description(), true);

@@ -10,6 +10,8 @@
 #include "colmap_seapoint/cli/command.h"
 #include "colmap_seapoint/cli/command_line.h"
 #include "colmap_seapoint/cli/manual.h"
+#include "colmap_seapoint/system/memory_budget.h"
+#include "colmap_seapoint/system/memory_limit.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -53,6 +55,19 @@ ExitCode RunHelp(const std::vector<Command>& commands, const std::vector<std::st
   return kDone;
 }
 
+// What holds for the whole process.
+void ApplyRunOptions(const OptionTable& table) {
+  SetLogLevel(static_cast<LogLevel>(*std::get<int*>(table.Find("log_level")->target)));
+  const std::string& max_memory = *std::get<std::string*>(table.Find("max_memory")->target);
+  if (max_memory.empty()) return;
+  const auto bytes = ParseBytes(max_memory);
+  if (!bytes) {
+    throw UsageError("--max_memory " + max_memory +
+                     ": must be a size as 4G or 500M, or a number of bytes");
+  }
+  SetMaxMemory(*bytes);
+}
+
 ExitCode RunCommand(const Command& command, const std::vector<std::string>& arguments) {
   OptionTable table;
   command.bind(&table);
@@ -60,7 +75,7 @@ ExitCode RunCommand(const Command& command, const std::vector<std::string>& argu
     PrintCommandHelp(command, table, std::cout);
     return kDone;
   }
-  SetLogLevel(static_cast<LogLevel>(*std::get<int*>(table.Find("log_level")->target)));
+  ApplyRunOptions(table);
   const CommandResult result = command.run();
   std::cout << result.text << std::flush;
   return result.is_complete ? kDone : kIncomplete;

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/options.h"
 #include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/compare/cell_measures.h"
 #include "colmap_seapoint/compare/nearest.h"
@@ -89,6 +90,20 @@ void MeasureSpacing(const PointTiles& cloud, int num_threads, const CompareCallb
   std::nth_element(squared.begin(), middle, squared.end());
   way->num_in_spacing = squared.size();
   way->spacing = std::isfinite(*middle) ? std::sqrt(*middle) : 0;
+}
+
+// Every cell must have a number, and every place in it one of its own: a double has 53 bits.
+void CheckPrecision(double farthest, const std::filesystem::path& path,
+                    const CloudComparison& result) {
+  constexpr double kMaxCells = 1ll << 50;
+  const double least = std::min(
+      {0.5 * result.distances.front(), result.voxel_size, result.cell_size, result.area_cell_size});
+  if (farthest <= kMaxCells * least) return;
+  double distance = result.distances.front();
+  throw Error(path.string(),
+              "has coordinates up to " + OptionValueText(&farthest) +
+                  ", too large for a distance of " + OptionValueText(&distance),
+              "move the cloud to the origin, or give larger --distances");
 }
 
 void ChooseLengths(const CompareOptions& options, const std::filesystem::path& reference,
@@ -248,6 +263,8 @@ CloudComparison CompareClouds(const std::filesystem::path& input,
   MeasureSpacing(*tiled.clouds[0], num_threads, callbacks, &result.input);
   MeasureSpacing(*tiled.clouds[1], num_threads, callbacks, &result.reference);
   ChooseLengths(options, reference, &result);
+  CheckPrecision(tiled.surveys[0].farthest, input, result);
+  CheckPrecision(tiled.surveys[1].farthest, reference, result);
   if (callbacks.begin) {
     callbacks.begin({result, tiled.view, tiled.surveys[0].fits_float, tiled.surveys[1].fits_float});
   }

@@ -1,5 +1,7 @@
 #include "colmap_seapoint/compare/point_tiles.h"
 
+#include <algorithm>
+
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/cloud/ply_reader.h"
 
@@ -17,6 +19,7 @@ CloudSurvey SurveyCloud(const std::filesystem::path& path, uint64_t stride,
   survey.fits_float = reader.FitsFloat();
   int64_t num_read = 0;
   for (CloudVertex vertex; reader.Next(&vertex); ++num_read) {
+    survey.farthest = std::max(survey.farthest, vertex.xyz.cwiseAbs().maxCoeff());
     if (num_read % static_cast<int64_t>(stride) == 0) {
       survey.sample.push_back(vertex.xyz);
       if (vertex.normal.allFinite()) survey.normal_sum += vertex.normal.cast<double>();

@@ -21,6 +21,7 @@ struct CloudSurvey {
   bool fits_float = false;
   PointVector sample;  // every stride-th point
   Eigen::Vector3d normal_sum = Eigen::Vector3d::Zero();
+  double farthest = 0;  // largest coordinate of any point, without its sign
 };
 
 // Reads every point once. Throws as CloudReader does, and Error for a cloud without points.

@@ -61,21 +61,23 @@ bool ColmapProgram::HasMapperOption(const std::string& name) const {
   return std::binary_search(mapper_options.begin(), mapper_options.end(), name);
 }
 
-ColmapProgram FindColmap(const std::string& colmap) {
+ColmapProgram FindColmap(const std::string& colmap, double timeout_seconds) {
   ColmapProgram program;
+  program.timeout_seconds = timeout_seconds;
   program.path = FindProgram(colmap, kInstallRemedy);
   const auto read_line = [&](const std::string& line) {
     if (program.version.empty() && line.compare(0, 6, "COLMAP") == 0) program.version = line;
     const std::string name = OptionNameInHelp(line);
     if (!name.empty()) program.mapper_options.push_back(name);
   };
-  const auto result = RunSubprocess(program.path, {"mapper", "-h"}, {}, read_line);
-  RunSubprocess(program.path, {"help"}, {}, [&](const std::string& line) {
+  const auto run = [&](const std::vector<std::string>& arguments, const auto& on_line) {
+    return RunSubprocess(program.path, arguments, {}, on_line, timeout_seconds);
+  };
+  const auto result = run({"mapper", "-h"}, read_line);
+  run({"help"}, [&](const std::string& line) {
     program.has_global_mapper |= line.find(kGlobalMapper) != std::string::npos;
   });
-  if (program.has_global_mapper) {
-    RunSubprocess(program.path, {kGlobalMapper, "-h"}, {}, read_line);
-  }
+  if (program.has_global_mapper) run({kGlobalMapper, "-h"}, read_line);
   std::sort(program.mapper_options.begin(), program.mapper_options.end());
   if (result.Succeeded() && program.HasMapperOption("database_path")) return program;
   throw Error(program.path.string(),

@@ -13,6 +13,7 @@ using MapperOptions = std::map<std::string, std::string>;  // "Mapper.min_model_
 
 struct ColmapProgram {
   std::filesystem::path path;
+  double timeout_seconds = 0;               // that one run of it may take; 0 = no limit
   std::string version;                      // its own first line, "COLMAP 3.8 (...)"
   bool has_global_mapper = false;           // 4.0 and later
   std::vector<std::string> mapper_options;  // names of both mappers, sorted, without "--"
@@ -23,8 +24,8 @@ inline constexpr char kGlobalMapper[] = "global_mapper";
 
 // Finds `colmap` (a path, or a name on PATH) and asks it for the options of its mappers, since
 // their names change between versions. Throws Error when it is missing or does not answer as COLMAP
-// does. Cost: two or three starts of the program.
-ColmapProgram FindColmap(const std::string& colmap);
+// does. Cost: two or three starts of the program, each within timeout_seconds.
+ColmapProgram FindColmap(const std::string& colmap, double timeout_seconds = 0);
 
 // Appends "--name" and "value" for every option, in the order of their names.
 void AppendOptions(const MapperOptions& options, std::vector<std::string>* arguments);

@@ -54,7 +54,8 @@ Triangulation Retriangulate(const ColmapProgram& colmap, const TriangulationJob&
   fs::remove_all(output, error);
   fs::create_directories(output);
   const fs::path log = job.log_path.string() + "_triangulation.log";
-  const auto run = RunSubprocess(colmap.path, Arguments(colmap, job, folder, output), log, {});
+  const auto run = RunSubprocess(colmap.path, Arguments(colmap, job, folder, output), log, {},
+                                 colmap.timeout_seconds);
   Triangulation result;
   if (!run.Succeeded() || !IsSparseModel(output)) {
     result.fault = "the triangulation failed (" + run.Text() + ")";

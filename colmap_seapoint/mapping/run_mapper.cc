@@ -156,7 +156,8 @@ class MapperRounds {
       if (!line.empty()) last_line = line;
       if (const auto count = NumRegistered(line)) progress.Update(*count);
     };
-    const auto result = RunSubprocess(colmap_.path, Arguments(trial), LogOf(name), read_line);
+    const auto result = RunSubprocess(colmap_.path, Arguments(trial), LogOf(name), read_line,
+                                      colmap_.timeout_seconds);
     end_ = result.Text() + ", '" + last_line + "'";
     const std::vector<fs::path> models = ListModels(trial.folder);
     if (!CheckResult(result, last_line, !models.empty(), LogOf(name), must_succeed)) return trial;

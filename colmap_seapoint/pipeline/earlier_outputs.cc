@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
@@ -11,6 +10,7 @@
 
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/colmap/dense_workspace.h"
+#include "colmap_seapoint/io/files/input_stream.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "colmap_seapoint/pipeline/output_paths.h"
 
@@ -22,8 +22,10 @@ using Json = nlohmann::json;
 using Names = std::vector<std::string>;
 
 Json ReadJson(const fs::path& path) {
-  std::ifstream file(path);
-  return file ? Json::parse(file, nullptr, false) : Json();
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return Json();
+  InputStream file(path);
+  return Json::parse(file, nullptr, false);
 }
 
 // Names of the entries of a folder; none where there is no such folder.
@@ -89,17 +91,17 @@ bool WroteMaps(const Json& report) {
 
 Names DenseMapsOf(const fs::path& folder) {
   Names pictures;
-  std::ifstream list(folder / "stereo" / "fusion.cfg");
-  for (std::string line; std::getline(list, line);) {
+  const auto list = OpenIfThere(folder / "stereo" / "fusion.cfg");
+  for (std::string line; list && std::getline(*list, line);) {
     if (IsSafeImageName(line)) pictures.push_back(line);
   }
   return DenseMapNames(pictures);
 }
 
 bool IsDifferenceCloud(const fs::path& path) {
-  std::ifstream file(path);
+  const auto file = OpenIfThere(path);
   std::string line;
-  for (int i = 0; i < 4 && std::getline(file, line); ++i) {
+  for (int i = 0; file && i < 4 && std::getline(*file, line); ++i) {
     if (line.find("distance to the other cloud") != std::string::npos) return true;
   }
   return false;

@@ -15,6 +15,7 @@
 #include "colmap_seapoint/io/image/image_file.h"
 #include "colmap_seapoint/io/outputs/run_lock.h"
 #include "colmap_seapoint/pipeline/output_paths.h"
+#include "colmap_seapoint/system/memory_budget.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -65,6 +66,8 @@ class Extractor {
       result.fingerprint = Fingerprint(result.input, mask_hash, extraction);
       result.is_unchanged = stored == result.fingerprint;
       if (result.is_unchanged) return result;
+      // Its SeaPoints take less than decoding it does.
+      const MemoryShare share(2 * file.BytesToDecode());
       const GrayImage picture = file.DecodeGray();
       result.features =
           ExtractFeatures(picture, DecodeMask(name, mask, picture), extraction.options).features;

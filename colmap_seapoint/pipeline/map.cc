@@ -101,7 +101,7 @@ void PutModelsInPlace(const fs::path& from, const fs::path& sparse, OutputFolder
 
 MappingPlan PlanMapping(const AutomaticReconstructorOptions& options, const Workspace& workspace) {
   MappingPlan plan;
-  plan.colmap = FindColmap(options.colmap_path);
+  plan.colmap = FindColmap(options.colmap_path, options.colmap_timeout);
   const int seed = options.run.random_seed;
   const bool finds_lens = FindsLens(options);
   // Where the lens is ours to find, the models are adjusted by us afterwards (adjust_lens.h); where

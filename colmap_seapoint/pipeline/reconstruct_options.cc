@@ -14,6 +14,9 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
   table->AddRequired("workspace_path", &workspace_path,
                      "folder for database.db, sparse/, dense/ and report/; created when missing");
   table->Add("colmap_path", &colmap_path, "the colmap program: a path, or a name on PATH", "ours");
+  table->Add("colmap_timeout", &colmap_timeout,
+             "seconds that one run of colmap may take before it is stopped; 0 = no limit", "ours",
+             0, 1e8);
   table->Add(
       kQualityOption, &quality,
       "what posing may cost. field: a coarse mapper, or global_mapper where this COLMAP has "

@@ -22,6 +22,7 @@ struct AutomaticReconstructorOptions {
   std::string image_path;              // folder, sub-folders included
   std::string workspace_path;          // folder, created when missing
   std::string colmap_path = "colmap";  // a path, or a name on PATH
+  double colmap_timeout = 0;           // seconds that one run of it may take; 0 = no limit
   std::string quality = "survey";      // field, survey or archive: what posing may cost
   std::string matcher = "auto";        // auto, sequential or exhaustive
   bool adjust_principal_point = true;

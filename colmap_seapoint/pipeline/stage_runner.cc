@@ -2,13 +2,13 @@
 
 #include <unistd.h>
 
-#include <fstream>
 #include <system_error>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/content_hash.h"
+#include "colmap_seapoint/io/files/input_stream.h"
 #include "colmap_seapoint/io/outputs/file_record.h"
 #include "colmap_seapoint/pipeline/earlier_outputs.h"
 
@@ -73,9 +73,9 @@ std::filesystem::path WorkspaceState::PathOf(const std::string& stage) const {
 }
 
 std::optional<Json> WorkspaceState::Read(const std::string& stage) const {
-  std::ifstream file(PathOf(stage));
+  const auto file = OpenIfThere(PathOf(stage));
   if (!file) return std::nullopt;
-  Json record = Json::parse(file, nullptr, false);
+  Json record = Json::parse(*file, nullptr, false);
   if (!record.is_object()) return std::nullopt;
   return record;
 }

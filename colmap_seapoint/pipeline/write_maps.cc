@@ -16,6 +16,7 @@
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/run_report.h"
 #include "colmap_seapoint/io/image/image_file.h"
+#include "colmap_seapoint/system/memory_budget.h"
 #include "densify/densify_pair.h"
 #include "densify/maps/undistortion.h"
 
@@ -196,7 +197,8 @@ int MapWriter::NumViewsAtOnce() const {
                                    static_cast<double>(to.width) * to.height);
     max_bytes = std::max(max_bytes, kBytesPerPixel * pixels);
   }
-  return std::clamp(static_cast<int>(kMaxBytesAtOnce / max_bytes), 1, num_threads_);
+  const double most = std::min(kMaxBytesAtOnce, 0.5 * static_cast<double>(MaxMemory()));
+  return std::clamp(static_cast<int>(most / max_bytes), 1, num_threads_);
 }
 
 void MapWriter::WriteMaps(const std::vector<LeftOutPicture>& left_out, RunReport* report) const {

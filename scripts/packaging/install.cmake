@@ -38,7 +38,7 @@ endif()
 # What an outsider links: feature, densify, colmap, cloud, pipeline. The other targets come along;
 # only the headers that a room names as its public ones do.
 set(exported_targets
-  seapoint_flags seapoint_simd seapoint_base
+  seapoint_flags seapoint_simd seapoint_base seapoint_system
   seapoint_files seapoint_outputs seapoint_image seapoint_cloud seapoint_colmap seapoint_io
   seapoint_feature_kernels seapoint_feature_detector seapoint_feature_descriptor
   seapoint_feature_matching seapoint_feature_retrieval seapoint_feature

@@ -34,19 +34,21 @@ void Limit(int resource, long value) {
 }
 
 [[noreturn]] void Execute(const std::string& program, const std::vector<std::string>& arguments,
-                          const CliOptions& options, const fs::path& out, const fs::path& err) {
-  RedirectTo(out, STDOUT_FILENO);
+                          const CliOptions& options, const fs::path& out, const fs::path& err,
+                          ReadFailer* failer) {
+  RedirectTo(options.out_path.empty() ? out : fs::path(options.out_path), STDOUT_FILENO);
   RedirectTo(err, STDERR_FILENO);
   for (const auto& [name, value] : options.environment) setenv(name.c_str(), value.c_str(), 1);
   Limit(RLIMIT_FSIZE, options.max_file_bytes);
   Limit(RLIMIT_NPROC, options.max_processes);
   Limit(RLIMIT_AS, options.max_address_bytes);
-  if (options.max_file_bytes > 0) signal(SIGXFSZ, SIG_IGN);
   if (options.as_nobody && (setgid(kNobody) != 0 || setuid(kNobody) != 0)) _exit(125);
   std::vector<char*> texts = {const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments)
     texts.push_back(const_cast<char*>(argument.c_str()));
   texts.push_back(nullptr);
+  if (failer != nullptr) failer->StartInChild();
+  for (const int descriptor : options.closed_descriptors) close(descriptor);
   execv(program.c_str(), texts.data());
   _exit(126);
 }
@@ -73,21 +75,29 @@ CliResult RunProgram(const std::string& program, const std::vector<std::string>&
                      const CliOptions& options) {
   const TemporaryFolder folder;
   const auto start = Clock::now();
+  std::optional<ReadFailer> failer;
+  if (options.failing_read) failer.emplace(*options.failing_read);
   const pid_t child = fork();
-  if (child == 0) Execute(program, arguments, options, folder / "out", folder / "err");
+  if (child == 0) {
+    Execute(program, arguments, options, folder / "out", folder / "err",
+            failer ? &*failer : nullptr);
+  }
+  if (failer) failer->Watch(child);
   CliResult result;
+  bool is_killed = false;
   int status = 0;
   rusage usage{};
   while (wait4(child, &status, WNOHANG, &usage) == 0) {
     const double seconds = SecondsSince(start);
     result.timed_out = seconds > options.timeout_seconds;
-    if (result.timed_out || (options.kill_when && options.kill_when(seconds))) {
-      kill(child, SIGKILL);
-      wait4(child, &status, 0, &usage);
-      break;
+    if (result.timed_out) kill(child, SIGKILL);
+    if (!is_killed && options.kill_when && options.kill_when(seconds)) {
+      kill(child, options.kill_signal);
+      is_killed = true;
     }
     std::this_thread::sleep_for(kPoll);
   }
+  if (failer) result.num_failed_reads = failer->NumFailed();
   result.peak_rss_bytes = 1024 * static_cast<uint64_t>(usage.ru_maxrss);
   if (WIFEXITED(status)) result.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) result.signal_number = WTERMSIG(status);

@@ -7,8 +7,11 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "tests/cli/failing_read.h"
 
 namespace colmap_seapoint {
 
@@ -18,9 +21,14 @@ struct CliOptions {
   long max_file_bytes = 0;                         // no file may grow beyond it; 0 = no limit
   long max_processes = 0;                          // RLIMIT_NPROC, threads too; 0 = no limit
   long max_address_bytes = 0;                      // RLIMIT_AS; 0 = no limit
+  std::vector<int> closed_descriptors;             // closed by who starts it: 0, 1, 2
+  std::string out_path;                            // where stdout goes; empty = into `out`
   double timeout_seconds = 60;                     // then it is killed
-  // Kill -9 as soon as this says so; asked every few milliseconds with the seconds since the start.
+  // Sent kill_signal as soon as this says so, once; asked every few milliseconds with the seconds
+  // since the start.
   std::function<bool(double)> kill_when;
+  int kill_signal = 9;
+  std::optional<FailingRead> failing_read;
 };
 
 struct CliResult {
@@ -28,6 +36,7 @@ struct CliResult {
   int signal_number = 0;
   bool timed_out = false;
   uint64_t peak_rss_bytes = 0;
+  int num_failed_reads = 0;  // of failing_read
   std::string out, err;
 
   std::string LastErrorLine() const;

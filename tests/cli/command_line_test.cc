@@ -200,7 +200,7 @@ TEST_F(CommandLine, MistakesOfAProjectFileNameIt) {
   EXPECT_USAGE_ERROR(ParseFile("image_path=i\nno equals sign\n"), path);
   EXPECT_USAGE_ERROR(ParseFile("image_path=i\n[Dive]\ncount=many\n"), "--Dive.count many");
   EXPECT_ERROR(ParseCommandLine(command_, {"--project_path", path + ".absent"}, &table_),
-               path + ".absent: the project file cannot be read");
+               path + ".absent: cannot be read (No such file");
   // A file cannot name another one.
   EXPECT_USAGE_ERROR(ParseFile("image_path=i\nproject_path=j\n"), "project_path");
 }

@@ -6,6 +6,7 @@
 //   no_model  ends like COLMAP 3.8 without any   crash       a half-written model, then SIGABRT
 //   global    has a global_mapper too, which finds all; the mapper fails
 //   global_partial  has one that leaves a picture out; the mapper finds all
+//   babble    first prints 200 MB without the end of a line
 // FAKE_COLMAP_SECONDS: how long the mapper takes. FAKE_COLMAP_PID: file that gets its process id.
 #include <signal.h>
 #include <unistd.h>
@@ -126,6 +127,10 @@ int RunMapper(bool is_global, std::map<std::string, std::string> options) {
   if (!listed.empty()) {
     const auto is_unlisted = [&](const auto& image) { return listed.count(image.name) == 0; };
     images.erase(std::remove_if(images.begin(), images.end(), is_unlisted), images.end());
+  }
+  if (mode == "babble") {
+    const std::string words(1 << 20, 'x');
+    for (int i = 0; i < 200; ++i) std::cout << words << std::flush;
   }
   const double seconds = std::atof(Variable("FAKE_COLMAP_SECONDS", "0").c_str());
   for (size_t i = 0; i < images.size(); ++i) {

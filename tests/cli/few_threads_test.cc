@@ -66,6 +66,25 @@ TEST_F(FewThreads, NoneBesideTheFirst) {
   ExpectSame(RunAll("one", options), RunAll("many", {}));
 }
 
+// Maps go through OpenCV, whose own threads would fail.
+TEST_F(FewThreads, NoneForTheLibrariesEither) {
+  const auto densify = [&](const std::string& name, const CliOptions& options) {
+    Run({"partial_densifier", "--image_path", folder_ / "images", "--input_path", folder_ / "model",
+         "--output_path", folder_ / name, "--PartialDensification.write_maps", "1"},
+        options);
+    return ReadTree((folder_ / name) / "stereo");
+  };
+  CliOptions options;
+  options.as_nobody = getuid() == 0;
+  if (RunProgram(SEAPOINT_PROGRAM, {"version"}, options).exit_code != 0) {
+    GTEST_SKIP() << "an unprivileged user cannot run the program";
+  }
+  options.max_processes = 1;
+  const auto one = densify("one", options);
+  EXPECT_GT(one.size(), 20u);
+  EXPECT_TRUE(one == densify("many", {}));
+}
+
 TEST_F(FewThreads, StacksThatTheAddressSpaceCannotHold) {
   CliOptions options;
   options.max_address_bytes = 1L << 30;  // of 8 MB each

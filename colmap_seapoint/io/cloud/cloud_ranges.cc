@@ -5,11 +5,12 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <string>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/cloud/ply_header.h"
+#include "colmap_seapoint/io/files/input_stream.h"
+#include "colmap_seapoint/system/system_error.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -20,10 +21,7 @@ constexpr size_t kPointBytes = 7 * sizeof(float) + 3;  // as CloudWriter writes 
 
 CloudRanges::CloudRanges(const std::filesystem::path& path) : path_(path) {
   {
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream) {
-      throw Error(path.string(), "cannot be read", "check the path and the file's permissions");
-    }
+    InputStream stream(path);
     const PlyHeader header = ReadPlyHeader(path.string(), &stream);
     first_byte_ = static_cast<uint64_t>(stream.tellg());
     const bool is_ours = !header.is_ascii && !header.is_big_endian && header.elements.size() == 1 &&
@@ -35,10 +33,7 @@ CloudRanges::CloudRanges(const std::filesystem::path& path) : path_(path) {
     }
   }
   descriptor_ = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor_ < 0) {
-    throw Error(path.string(), std::string("cannot be read (") + std::strerror(errno) + ")",
-                "check the path and the file's permissions");
-  }
+  if (descriptor_ < 0) throw ReadError(path, errno);
 }
 
 CloudRanges::~CloudRanges() { close(descriptor_); }
@@ -51,7 +46,8 @@ std::vector<CloudPoint> CloudRanges::Read(uint64_t first, uint64_t count) const 
     const ssize_t got = pread(descriptor_, bytes.data() + done, bytes.size() - done,
                               static_cast<off_t>(first_byte_ + first * kPointBytes + done));
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) throw Error(path_.string(), "cannot be read to its end", "check the disk");
+    if (got < 0) throw ReadError(path_, errno);
+    if (got == 0) throw Error(path_.string(), "has become shorter", "let it be written again");
     done += static_cast<size_t>(got);
   }
   std::vector<CloudPoint> points(count);

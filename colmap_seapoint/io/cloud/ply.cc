@@ -4,7 +4,6 @@
 #include <cstring>
 #include <string>
 
-#include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/cloud/ply_reader.h"
 
 namespace colmap_seapoint {
@@ -83,9 +82,6 @@ std::vector<CloudPoint> ReadCloud(const std::filesystem::path& path) {
   points.reserve(reader.NumPoints());
   for (CloudVertex vertex; reader.Next(&vertex);) {
     points.push_back({vertex.xyz.cast<float>(), vertex.normal, vertex.rgb, vertex.confidence});
-    if (points.back().xyz.allFinite()) continue;
-    throw Error(path.string(), "vertex " + std::to_string(points.size() - 1) + " is too far away",
-                "shift the cloud nearer to the origin");
   }
   return points;
 }

@@ -4,18 +4,21 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <string>
 #include <system_error>
 #include <vector>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/cloud/ply_header.h"
+#include "colmap_seapoint/io/files/input_stream.h"
 
 namespace colmap_seapoint {
 namespace {
 
 constexpr size_t kReadBytes = 1 << 20;
+// Beyond it a double has no digits left behind the point, and a cell's number does not fit into 64
+// bits: such values are no places, but what was left of a damaged or unset one.
+constexpr double kMaxCoordinate = 1e15;
 constexpr const char* kRemedy = "restore a copy, or save the cloud again";
 
 // Which property of the vertices is which value of a CloudVertex; -1 when it is not there.
@@ -104,7 +107,7 @@ double LoadValue(const char* data, PlyType type) {
 // Reads the rows of elements, value by value, from either form.
 class RowReader {
  public:
-  RowReader(const std::string& path, std::ifstream* stream, const PlyHeader& header)
+  RowReader(const std::string& path, std::istream* stream, const PlyHeader& header)
       : path_(path),
         stream_(*stream),
         is_ascii_(header.is_ascii),
@@ -178,7 +181,7 @@ class RowReader {
   }
 
   const std::string& path_;
-  std::ifstream& stream_;
+  std::istream& stream_;
   bool is_ascii_;
   bool is_big_endian_;
   std::string word_;
@@ -190,12 +193,7 @@ class RowReader {
 }  // namespace
 
 struct CloudReader::State {
-  explicit State(const std::filesystem::path& file)
-      : path(file.string()), stream(file, std::ios::binary) {
-    std::error_code ignored;
-    if (!stream || !std::filesystem::is_regular_file(file, ignored)) {
-      throw Error(path, "cannot be read", "check the path and the file's permissions");
-    }
+  explicit State(const std::filesystem::path& file) : path(file.string()), stream(file) {
     header = ReadPlyHeader(path, &stream);
     rows = std::make_unique<RowReader>(path, &stream, header);
     FindVertices();
@@ -216,7 +214,7 @@ struct CloudReader::State {
   }
 
   std::string path;
-  std::ifstream stream;
+  InputStream stream;
   PlyHeader header;
   std::unique_ptr<RowReader> rows;
   const PlyElement* vertex = nullptr;
@@ -260,6 +258,12 @@ bool CloudReader::Next(CloudVertex* vertex) {
   SetVertex(*state.vertex, state.layout, state.values, vertex);
   if (!vertex->xyz.allFinite()) {
     throw Error(state.path, "vertex " + std::to_string(state.num_read) + " is not finite",
+                "remove such points, e.g. in CloudCompare or MeshLab");
+  }
+  if (vertex->xyz.cwiseAbs().maxCoeff() > kMaxCoordinate) {
+    throw Error(state.path,
+                "vertex " + std::to_string(state.num_read) +
+                    " is too far away: a coordinate is beyond 1e15",
                 "remove such points, e.g. in CloudCompare or MeshLab");
   }
   ++state.num_read;

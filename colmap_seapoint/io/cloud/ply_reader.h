@@ -21,7 +21,7 @@ struct CloudVertex {
 // stand in any order; other properties, lists and elements are skipped. Memory: a buffer of 1 MB.
 // About 50 ns a point (binary). Throws Error naming file, finding and remedy: missing, not a PLY,
 // an unknown format or type, no element 'vertex', no x y z, truncated, a word that is no number, a
-// position that is not finite.
+// position that is not finite, or farther than 1e15 from the origin.
 class CloudReader {
  public:
   // Reads the header and skips what stands before the vertices.

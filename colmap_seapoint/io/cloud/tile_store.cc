@@ -7,6 +7,7 @@
 #include <cerrno>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/system/system_error.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -15,7 +16,7 @@ constexpr size_t kBlockBytes = 1 << 14;
 
 [[noreturn]] void Fail(const std::string& folder, const std::string& what, int error_number) {
   throw Error(
-      folder, what + " (" + std::strerror(error_number) + ")",
+      folder, what + " (" + SystemText(error_number) + ")",
       "the clouds are sorted into temporary files there, of about their own size: free some "
       "space, or write to another disk");
 }

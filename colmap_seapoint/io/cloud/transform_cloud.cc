@@ -2,16 +2,15 @@
 
 #include <charconv>
 #include <cstring>
-#include <fstream>
 #include <optional>
 #include <sstream>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/cloud/ply_header.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/files/input_stream.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -71,11 +70,7 @@ class Job {
  public:
   Job(const std::filesystem::path& from, const std::filesystem::path& to,
       const Similarity3d& new_from_old)
-      : path_(from.string()), stream_(from, std::ios::binary), similarity_(new_from_old) {
-    std::error_code ignored;
-    if (!stream_ || !std::filesystem::is_regular_file(from, ignored)) {
-      throw Error(path_, "cannot be read", "check the path and the file's permissions");
-    }
+      : path_(from.string()), stream_(from), similarity_(new_from_old) {
     header_ = ReadPlyHeader(path_, &stream_);
     if (header_.is_big_endian) {
       throw Error(path_, "is big-endian", "save the cloud as binary_little_endian or ASCII");
@@ -97,7 +92,7 @@ class Job {
     output_->Write(header);
     const uint64_t count = header_.elements[0].count;
     header_.is_ascii ? MoveLines(count) : MoveRows(count);
-    CopyRest();
+    output_->WriteRest(&stream_);
     return count;
   }
   void Commit() { output_->Commit(); }
@@ -119,8 +114,7 @@ class Job {
       if (static_cast<size_t>(stream_.gcount()) != bytes) Truncated();
       for (size_t at = 0; at < bytes; at += row_bytes) {
         char* row = buffer.data() + at;
-        Put(vertex, offsets, places_.xyz, similarity_ * Get(vertex, offsets, places_.xyz, row),
-            row);
+        Put(vertex, offsets, places_.xyz, Moved(Get(vertex, offsets, places_.xyz, row)), row);
         if (!places_.has_normal) continue;
         const Eigen::Vector3d normal = Get(vertex, offsets, places_.normal, row);
         Put(vertex, offsets, places_.normal, NewNormal(normal, similarity_), row);
@@ -128,6 +122,14 @@ class Job {
       output_->Write(buffer.data(), bytes);
       count -= rows;
     }
+  }
+
+  // A float ends at 3.4e38.
+  Eigen::Vector3d Moved(const Eigen::Vector3d& xyz) const {
+    const Eigen::Vector3d moved = similarity_ * xyz;
+    if (!(moved.array().abs() > 1e30).any()) return moved;
+    throw Error(path_, "a point lies farther than 1e30 from the origin",
+                "remove such points, e.g. in CloudCompare or MeshLab");
   }
 
   static Eigen::Vector3d Get(const PlyElement& vertex, const std::vector<size_t>& offsets,
@@ -168,7 +170,7 @@ class Job {
       for (std::string word; words >> word;) fields.push_back(word);
       if (fields.empty()) continue;
       if (fields.size() < header_.elements[0].properties.size()) Truncated();
-      Replace(places_.xyz, similarity_ * Parse(places_.xyz, fields), &fields);
+      Replace(places_.xyz, Moved(Parse(places_.xyz, fields)), &fields);
       if (places_.has_normal) {
         Replace(places_.normal, NewNormal(Parse(places_.normal, fields), similarity_), &fields);
       }
@@ -205,16 +207,8 @@ class Job {
     }
   }
 
-  void CopyRest() {
-    std::vector<char> buffer(kBufferBytes);
-    while (stream_.read(buffer.data(), static_cast<std::streamsize>(buffer.size())),
-           stream_.gcount() > 0) {
-      output_->Write(buffer.data(), static_cast<size_t>(stream_.gcount()));
-    }
-  }
-
   std::string path_;
-  std::ifstream stream_;
+  InputStream stream_;
   const Similarity3d& similarity_;
   PlyHeader header_;
   Places places_{};
@@ -227,13 +221,10 @@ uint64_t TransformCloud(const std::filesystem::path& from, const std::filesystem
                         const Similarity3d& new_from_old) {
   Job job(from, to, new_from_old);
   const uint64_t count = job.Run();
-  std::ifstream vis(from.string() + ".vis", std::ios::binary);
-  if (vis) {
+  const std::unique_ptr<InputStream> vis = OpenIfThere(from.string() + ".vis");
+  if (vis != nullptr) {
     AtomicFile copy(to.string() + ".vis");
-    std::vector<char> buffer(kBufferBytes);
-    while (vis.read(buffer.data(), static_cast<std::streamsize>(buffer.size())), vis.gcount() > 0) {
-      copy.Write(buffer.data(), static_cast<size_t>(vis.gcount()));
-    }
+    copy.WriteRest(vis.get());
     copy.Commit();
   }
   job.Commit();

@@ -1,6 +1,7 @@
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -45,6 +46,16 @@ std::string ImmutableUri(const std::string& path) {
     }
   }
   return uri + "?immutable=1";
+}
+
+// Whether quick_check found not a damaged page but one that could not be read: it says "failed to
+// get page 82", or "unable to get the page. error code=266" with SQLite's code.
+bool ReportsFailingDisk(const std::string& finding) {
+  static constexpr char kCode[] = "error code=";
+  if (finding.find("failed to get page ") != std::string::npos) return true;
+  const size_t place = finding.find(kCode);
+  if (place == std::string::npos) return false;
+  return (std::atoi(finding.c_str() + place + sizeof(kCode) - 1) & 0xff) == SQLITE_IOERR;
 }
 
 void ChooseJournal(const SqlConnection& connection) {
@@ -117,6 +128,10 @@ void ColmapDatabase::CheckWhole() const {
   std::string finding = check[0].Text();
   for (char& c : finding) {
     if (c == '\n') c = ' ';
+  }
+  if (ReportsFailingDisk(finding)) {
+    // A healthy database on a disk that fails: by no means to be deleted.
+    ThrowSqliteError(*connection_, SQLITE_IOERR, "checking it, " + finding);
   }
   throw Error(connection_->path, "the database is damaged (" + finding + ")",
               "restore a copy, or delete it and run again");

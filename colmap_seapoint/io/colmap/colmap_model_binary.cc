@@ -1,12 +1,10 @@
-#include <cstdio>
 #include <cstring>
-#include <memory>
-#include <system_error>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/colmap/colmap_model_internal.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/files/input_stream.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -22,18 +20,14 @@ constexpr size_t kTrackElementBytes = 2 * sizeof(uint32_t);
 class BinaryReader {
  public:
   explicit BinaryReader(const std::filesystem::path& path)
-      : path_(path), file_(std::fopen(path.c_str(), "rb"), &std::fclose) {
-    std::error_code error;
-    size_ = std::filesystem::file_size(path, error);
-    if (file_ == nullptr || error) {
-      throw Error(path.string(), "cannot be read", "check the path and the file's permissions");
-    }
-  }
+      : path_(path), stream_(path), size_(std::filesystem::file_size(path)) {}
 
   RecordPlace Place() const { return RecordPlace(path_, "byte", offset_); }
 
   void ReadBytes(void* data, size_t size) {
-    if (size > size_ - offset_ || std::fread(data, 1, size, file_.get()) != size) {
+    const auto count = static_cast<std::streamsize>(size);
+    if (size > size_ - offset_ ||
+        stream_.rdbuf()->sgetn(static_cast<char*>(data), count) != count) {
       Place().Fail("the file ends in the middle of a record: it is truncated or damaged");
     }
     offset_ += size;
@@ -77,7 +71,7 @@ class BinaryReader {
 
  private:
   std::filesystem::path path_;
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+  InputStream stream_;
   uint64_t size_ = 0;
   uint64_t offset_ = 0;
 };

@@ -1,11 +1,11 @@
 #include <charconv>
-#include <fstream>
 #include <string_view>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/colmap/colmap_model_internal.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/files/input_stream.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -21,15 +21,10 @@ std::string_view Trim(std::string_view text) {
 // The lines of a file, with their numbers.
 class LineReader {
  public:
-  explicit LineReader(const std::filesystem::path& path) : path_(path), stream_(path) {
-    if (!stream_) {
-      throw Error(path.string(), "cannot be read", "check the path and the file's permissions");
-    }
-  }
+  explicit LineReader(const std::filesystem::path& path) : path_(path), stream_(path) {}
 
   bool Next() {
     if (!std::getline(stream_, line_)) {
-      if (stream_.bad()) Place().Fail("cannot be read");
       line_.clear();
       return false;
     }
@@ -51,7 +46,7 @@ class LineReader {
 
  private:
   std::filesystem::path path_;
-  std::ifstream stream_;
+  InputStream stream_;
   std::string line_;
   uint64_t number_ = 0;
 };

@@ -2,7 +2,6 @@
 
 #include <charconv>
 #include <cstring>
-#include <fstream>
 #include <functional>
 #include <iterator>
 #include <sstream>
@@ -12,6 +11,7 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/files/input_stream.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -29,12 +29,8 @@ bool IsFile(const std::filesystem::path& path) {
 }
 
 std::string ReadWhole(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream || stream.bad()) {
-    throw Error(path.string(), "cannot be read", "check the file's permissions");
-  }
-  return bytes;
+  InputStream stream(path);
+  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 Rigid3d FromNumbers(const double* qwxyz_t) {

@@ -1,11 +1,11 @@
 #include "colmap_seapoint/io/colmap/dense_workspace.h"
 
-#include <fstream>
 #include <iterator>
 #include <set>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/files/input_stream.h"
 #include "colmap_seapoint/io/image/image_file.h"
 
 namespace colmap_seapoint {
@@ -26,7 +26,7 @@ const std::string& Safe(const std::string& image_name) {
 }
 
 // Before the next '&', which is passed.
-int ReadNumber(const fs::path& path, std::ifstream* stream, int max) {
+int ReadNumber(const fs::path& path, std::istream* stream, int max) {
   std::string text;
   char c = 0;
   while (stream->get(c) && c != '&' && c >= '0' && c <= '9' && text.size() < 8) text += c;
@@ -92,12 +92,8 @@ void WriteDenseMap(const fs::path& path, const FloatImage& map) {
 }
 
 FloatImage ReadDenseMap(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::error_code error;
-  const uint64_t size = fs::file_size(path, error);
-  if (!stream || error) {
-    throw Error(path.string(), "cannot be read", "check the path and the file's permissions");
-  }
+  InputStream stream(path);
+  const uint64_t size = fs::file_size(path);
   const int width = ReadNumber(path, &stream, kMaxSide);
   const int height = ReadNumber(path, &stream, kMaxSide);
   const int channels = ReadNumber(path, &stream, kMaxChannels);
@@ -115,7 +111,7 @@ FloatImage ReadDenseMap(const fs::path& path) {
       for (int x = 0; x < width; ++x) map.At(x, y, k) = row[static_cast<size_t>(x)];
     }
   }
-  if (!stream) throw Error(path.string(), "cannot be read to its end", "check the disk");
+  if (!stream) throw Error(path.string(), "has become shorter", kRemedy);
   return map;
 }
 

@@ -4,43 +4,18 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
-#include <memory>
 #include <system_error>
 #include <vector>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/io/files/input_stream.h"
 #include "colmap_seapoint/io/files/temporary_file.h"
+#include "colmap_seapoint/system/system_error.h"
 
 namespace colmap_seapoint {
 namespace {
 
 constexpr size_t kBufferBytes = 1 << 18;
-
-std::string Remedy(int error_number) {
-  switch (error_number) {
-    case ENOSPC:
-    case EDQUOT:
-    case EFBIG:
-      return "free some space or choose a folder on another disk";
-    case EACCES:
-    case EPERM:
-    case EROFS:
-      return "choose a folder that you may write to, or change its permissions";
-    case ENOENT:
-    case ENOTDIR:
-      return "create the folder first, or choose another one";
-    case EISDIR:
-      return "choose another name, or remove the folder of that name";
-    default:
-      return "check the path and the disk";
-  }
-}
-
-[[noreturn]] void Fail(const std::filesystem::path& path, const std::string& what,
-                       int error_number) {
-  throw Error(path.string(), what + " (" + std::strerror(error_number) + ")", Remedy(error_number));
-}
 
 // The rename itself must reach the disk too. A file system that cannot sync folders is no error.
 void SyncParentFolder(const std::filesystem::path& path) {
@@ -55,17 +30,19 @@ void SyncParentFolder(const std::filesystem::path& path) {
 
 AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(path_, ignored)) Fail(path_, "is a folder", EISDIR);
+  if (std::filesystem::is_directory(path_, ignored)) {
+    throw SystemError(path_, "is a folder", EISDIR);
+  }
   const std::filesystem::path parent = path_.parent_path();
   const TemporaryFile temporary = CreateTemporaryFile(parent.empty() ? "." : parent);
-  if (temporary.descriptor < 0) Fail(path_, "cannot be created", errno);
+  if (temporary.descriptor < 0) throw SystemError(path_, "cannot be created", errno);
   temporary_path_ = temporary.path;
   file_ = fdopen(temporary.descriptor, "wb");
   if (file_ == nullptr) {
     const int error_number = errno;
     unlink(temporary_path_.c_str());
     close(temporary.descriptor);
-    Fail(path_, "cannot be created", error_number);
+    throw SystemError(path_, "cannot be created", error_number);
   }
   std::setvbuf(file_, nullptr, _IOFBF, kBufferBytes);
 }
@@ -80,8 +57,16 @@ AtomicFile::~AtomicFile() {
 void AtomicFile::Write(const void* data, size_t size) {
   SEAPOINT_CHECK(file_ != nullptr);
   if (size == 0) return;
-  if (std::fwrite(data, 1, size, file_) != size) Fail(path_, "cannot be written", errno);
+  if (std::fwrite(data, 1, size, file_) != size)
+    throw SystemError(path_, "cannot be written", errno);
   size_ += size;
+}
+
+void AtomicFile::WriteRest(std::istream* from) {
+  std::vector<char> buffer(kBufferBytes);
+  while (const std::streamsize size = from->rdbuf()->sgetn(buffer.data(), kBufferBytes)) {
+    Write(buffer.data(), static_cast<size_t>(size));
+  }
 }
 
 void AtomicFile::WriteAt(uint64_t offset, const void* data, size_t size) {
@@ -89,17 +74,17 @@ void AtomicFile::WriteAt(uint64_t offset, const void* data, size_t size) {
   SEAPOINT_CHECK(offset <= size_ && size <= size_ - offset);
   if (fseeko(file_, static_cast<off_t>(offset), SEEK_SET) != 0 ||
       std::fwrite(data, 1, size, file_) != size || fseeko(file_, 0, SEEK_END) != 0) {
-    Fail(path_, "cannot be written", errno);
+    throw SystemError(path_, "cannot be written", errno);
   }
 }
 
 void AtomicFile::Commit() {
   SEAPOINT_CHECK(file_ != nullptr);
   if (std::fflush(file_) != 0 || fsync(fileno(file_)) != 0) {
-    Fail(path_, "cannot be written", errno);
+    throw SystemError(path_, "cannot be written", errno);
   }
   if (std::rename(temporary_path_.c_str(), path_.c_str()) != 0) {
-    Fail(path_, "cannot be put in its place", errno);
+    throw SystemError(path_, "cannot be put in its place", errno);
   }
   // fsync() has said that all is on the disk: closing has nothing to add.
   std::fclose(file_);
@@ -119,16 +104,9 @@ void CopyFileAtomically(const std::filesystem::path& from, const std::filesystem
     throw Error(to.string(), "is a link to the original " + from.string(),
                 "remove it, or choose another folder");
   }
-  const int descriptor = open(from.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) Fail(from, "cannot be read", errno);
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> source(fdopen(descriptor, "rb"),
-                                                               &std::fclose);
+  InputStream source(from);
   AtomicFile file(to);
-  std::vector<char> buffer(kBufferBytes);
-  while (const size_t size = std::fread(buffer.data(), 1, buffer.size(), source.get())) {
-    file.Write(buffer.data(), size);
-  }
-  if (std::ferror(source.get()) != 0) Fail(from, "cannot be read to its end", EIO);
+  file.WriteRest(&source);
   file.Commit();
 }
 
@@ -141,16 +119,16 @@ void CheckWritableDir(const std::filesystem::path& dir) {
   if (!exists) {
     error.clear();
     std::filesystem::create_directories(dir, error);
-    if (error) Fail(dir, "the folder cannot be created", error.value());
+    if (error) throw SystemError(dir, "the folder cannot be created", error.value());
   }
   RemoveLeftovers(dir);
   const TemporaryFile probe = CreateTemporaryFile(dir);
-  if (probe.descriptor < 0) Fail(dir, "no file can be created in this folder", errno);
+  if (probe.descriptor < 0) throw SystemError(dir, "no file can be created in this folder", errno);
   const bool written = write(probe.descriptor, "probe", 5) == 5;
   const int error_number = errno;
   unlink(probe.path.c_str());
   close(probe.descriptor);
-  if (!written) Fail(dir, "no file can be written in this folder", error_number);
+  if (!written) throw SystemError(dir, "no file can be written in this folder", error_number);
 }
 
 }  // namespace colmap_seapoint

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <istream>
 #include <string>
 
 namespace colmap_seapoint {
@@ -21,6 +22,7 @@ class AtomicFile {
 
   void Write(const void* data, size_t size);  // throws Error, e.g. on a full disk
   void Write(const std::string& text) { Write(text.data(), text.size()); }
+  void WriteRest(std::istream* from);  // all that is still to be read there
   void WriteAt(uint64_t offset, const void* data, size_t size);  // overwrites, then back to the end
   uint64_t Size() const { return size_; }
   void Commit();  // fsync, close, rename

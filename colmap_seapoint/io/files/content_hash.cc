@@ -2,16 +2,13 @@
 
 #include <xxhash.h>
 
-#include <cerrno>
 #include <cinttypes>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <new>
-#include <system_error>
 #include <vector>
 
-#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/io/files/input_stream.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -56,23 +53,12 @@ bool IsHashOf(const std::string& hash, const void* data, size_t size) {
 std::string HashText(const std::string& text) { return HashBytes(text.data(), text.size()); }
 
 std::string HashFile(const std::filesystem::path& path) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             &std::fclose);
-  if (file == nullptr) {
-    throw Error(path.string(), std::string("cannot be read (") + std::strerror(errno) + ")",
-                "check the path and the file's permissions");
-  }
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) {
-    throw Error(path.string(), "is no file", "give a file");
-  }
-  std::vector<unsigned char> buffer(1 << 18);
+  InputStream file(path);
+  std::vector<char> buffer(1 << 18);
   ContentHash hash;
-  while (const size_t size = std::fread(buffer.data(), 1, buffer.size(), file.get())) {
-    hash.Add(buffer.data(), size);
-  }
-  if (std::ferror(file.get())) {
-    throw Error(path.string(), "cannot be read to its end", "check the disk");
+  const auto buffer_bytes = static_cast<std::streamsize>(buffer.size());
+  while (const std::streamsize size = file.rdbuf()->sgetn(buffer.data(), buffer_bytes)) {
+    hash.Add(buffer.data(), static_cast<size_t>(size));
   }
   return hash.Text();
 }

@@ -4,9 +4,9 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/io/files/input_stream.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -57,13 +57,11 @@ double CsvNumber(const CsvRow& row, size_t field, const std::string& remedy) {
 }
 
 CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& option) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(path)) {
-    throw Error(path.string(), "there is no such file, or it cannot be read", "check " + option);
-  }
+  const std::unique_ptr<InputStream> stream = OpenIfThere(path);
+  if (stream == nullptr) throw Error(path.string(), "there is no such file", "check " + option);
   CsvTable table;
   std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
+  for (int number = 1; std::getline(*stream, line); ++number) {
     if (number == 1 && line.rfind("\xef\xbb\xbf", 0) == 0) line.erase(0, 3);
     line = Trim(line);
     if (line.empty() || line[0] == '#') continue;
@@ -79,7 +77,6 @@ CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& opti
       table.header += (table.header.empty() ? "" : ",") + Lower(field);
     }
   }
-  if (stream.bad()) throw Error(path.string(), "cannot be read to its end", "check the disk");
   return table;
 }
 

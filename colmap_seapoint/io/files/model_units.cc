@@ -1,11 +1,11 @@
 #include "colmap_seapoint/io/files/model_units.h"
 
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/files/input_stream.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -37,10 +37,10 @@ ModelUnits FromJson(const Json& json) {
 
 std::optional<ModelUnits> ReadModelUnits(const std::filesystem::path& dir) {
   const std::filesystem::path path = dir / kUnitsFile;
-  std::ifstream file(path);
-  if (!file) return std::nullopt;
+  const std::unique_ptr<InputStream> file = OpenIfThere(path);
+  if (file == nullptr) return std::nullopt;
   try {
-    return FromJson(Json::parse(file));
+    return FromJson(Json::parse(*file));
   } catch (const Json::exception& error) {
     throw Error(path.string(), std::string("is no description of units (") + error.what() + ")",
                 "write it again with model_scaler, or remove it: units are arbitrary then");

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/system/system_error.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -46,7 +47,14 @@ std::string FirstWords(const std::string& sql) { return sql.substr(0, sql.find('
 void ThrowSqliteError(const SqlConnection& connection, int code, const std::string& while_doing) {
   const Diagnosis diagnosis = Diagnose(code);
   std::string detail = while_doing;
-  if (connection.handle != nullptr) detail += std::string(": ") + sqlite3_errmsg(connection.handle);
+  if (connection.handle != nullptr) {
+    detail += std::string(": ") + sqlite3_errmsg(connection.handle);
+    const int primary = code & 0xff;
+    const int error_number = sqlite3_system_errno(connection.handle);
+    if (error_number != 0 && (primary == SQLITE_IOERR || primary == SQLITE_CANTOPEN)) {
+      detail += ", " + SystemText(error_number);
+    }
+  }
   std::replace(detail.begin(), detail.end(), '\n', ' ');
   throw Error(connection.path, diagnosis.finding + " (" + detail + ")", diagnosis.remedy);
 }

@@ -13,6 +13,8 @@
 #include <system_error>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/io/files/child_output.h"
+#include "colmap_seapoint/system/system_error.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -81,7 +83,8 @@ extern "C" void KillOwnGroup(int /*signal_number*/) { kill(0, SIGKILL); }
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
-  for (int number : {SIGTERM, SIGINT, SIGHUP, SIGPIPE}) signal(number, SIG_DFL);
+  // SIGXFSZ too: who does not look at what write() returns had better be ended by it.
+  for (int number : {SIGTERM, SIGINT, SIGHUP, SIGPIPE, SIGXFSZ}) signal(number, SIG_DFL);
   dup2(plan.null_input, STDIN_FILENO);
   dup2(plan.output, STDOUT_FILENO);
   dup2(plan.output, STDERR_FILENO);
@@ -125,9 +128,7 @@ pid_t StartGuard(const LaunchPlan& plan) {
   if (guard > 0) setpgid(guard, guard);  // here too: whoever is first
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
   if (guard < 0) {
-    throw Error(plan.argument_texts[0],
-                std::string("cannot be started (") + std::strerror(error_number) + ")",
-                "end other programs, or raise the limit of processes");
+    throw SystemError(plan.argument_texts[0], "cannot be started", error_number);
   }
   return guard;
 }
@@ -140,47 +141,6 @@ SubprocessResult WaitForGuard(pid_t guard) {
   if (WIFSIGNALED(status)) result.signal_number = WTERMSIG(status);
   if (WIFEXITED(status)) result.exit_code = WEXITSTATUS(status);
   return result;
-}
-
-// Anew, so that a link of that name is replaced and what it leads to is not written over.
-int CreateLog(const std::filesystem::path& path) {
-  unlink(path.c_str());
-  return open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-}
-
-void WriteLog(int log, const std::filesystem::path& path, const char* data, size_t size) {
-  while (log >= 0 && size > 0) {
-    const ssize_t written = write(log, data, size);
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) {
-      throw Error(path.string(), std::string("cannot be written (") + std::strerror(errno) + ")",
-                  "free some space or choose a folder on another disk");
-    }
-    data += written;
-    size -= static_cast<size_t>(written);
-  }
-}
-
-// Reads until every holder of the pipe's other end is gone.
-void CopyOutput(int input, int log, const std::filesystem::path& log_path,
-                const std::function<void(const std::string&)>& on_line) {
-  std::string line;
-  char buffer[4096];
-  while (true) {
-    const ssize_t count = read(input, buffer, sizeof(buffer));
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) break;
-    WriteLog(log, log_path, buffer, static_cast<size_t>(count));
-    for (ssize_t i = 0; i < count; ++i) {
-      if (buffer[i] != '\n') {
-        line.push_back(buffer[i]);
-        continue;
-      }
-      if (on_line) on_line(line);
-      line.clear();
-    }
-  }
-  if (on_line && !line.empty()) on_line(line);
 }
 
 }  // namespace
@@ -208,18 +168,12 @@ std::string SubprocessResult::Text() const {
 SubprocessResult RunSubprocess(const std::filesystem::path& program,
                                const std::vector<std::string>& arguments,
                                const std::filesystem::path& log_path,
-                               const std::function<void(const std::string&)>& on_line) {
+                               const std::function<void(const std::string&)>& on_line,
+                               double timeout_seconds) {
   LaunchPlan plan = MakePlan(program, arguments);
-  const FileDescriptor log(log_path.empty() ? -1 : CreateLog(log_path));
-  if (!log_path.empty() && log.Get() < 0) {
-    throw Error(log_path.string(), std::string("cannot be created (") + std::strerror(errno) + ")",
-                "choose a folder that you may write to");
-  }
+  ChildOutput output({program, log_path, on_line, timeout_seconds});
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) {
-    throw Error(program.string(), std::string("no pipe to it (") + std::strerror(errno) + ")",
-                "close other programs");
-  }
+  if (pipe2(ends, O_CLOEXEC) != 0) throw SystemError(program, "no pipe to it", errno);
   const FileDescriptor read_end(ends[0]);
   FileDescriptor write_end(ends[1]);
   const FileDescriptor null_input(open("/dev/null", O_RDONLY | O_CLOEXEC));
@@ -228,7 +182,7 @@ SubprocessResult RunSubprocess(const std::filesystem::path& program,
   const pid_t guard = StartGuard(plan);
   write_end.Close();
   try {
-    CopyOutput(read_end.Get(), log.Get(), log_path, on_line);
+    output.CopyFrom(read_end.Get());
   } catch (...) {
     kill(-guard, SIGKILL);
     WaitForGuard(guard);

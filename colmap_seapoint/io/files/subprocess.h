@@ -22,15 +22,18 @@ struct SubprocessResult {
 
 // Runs `program` with `arguments` until it ends; stdin is empty, the environment is ours with
 // QT_QPA_PLATFORM=offscreen. stdout and stderr together go to `log_path` (a new file in place of
-// what has that name; empty = nowhere) and line by line, without the newline, to `on_line`.
+// what has that name; empty = nowhere) and line by line, without the newline, to `on_line`; both are
+// bounded, however much the program prints (child_output.h). When it prints nothing for minutes, a
+// log line says so.
 //
 // The program and whatever it starts form a process group of their own, which a guard process
 // kills as soon as we die, even by kill -9. Call it from a thread that lives until we end.
-// Throws Error when the log cannot be written or the program cannot be started; an exception of
-// on_line ends the program first.
+// Throws Error when the log cannot be written, the program cannot be started, or it has not ended
+// after timeout_seconds (0: no limit); the program is ended first, as by an exception of on_line.
 SubprocessResult RunSubprocess(const std::filesystem::path& program,
                                const std::vector<std::string>& arguments,
                                const std::filesystem::path& log_path,
-                               const std::function<void(const std::string&)>& on_line);
+                               const std::function<void(const std::string&)>& on_line,
+                               double timeout_seconds = 0);
 
 }  // namespace colmap_seapoint

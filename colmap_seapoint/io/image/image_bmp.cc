@@ -3,6 +3,8 @@
 #include <cstdlib>
 
 #include "colmap_seapoint/io/image/image_codecs.h"
+#include "colmap_seapoint/io/image/image_limits.h"
+#include "colmap_seapoint/system/memory_budget.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -56,6 +58,14 @@ BmpHeader ReadHeader(const std::filesystem::path& path, std::FILE* file) {
   return header;
 }
 
+ImageHeader Promise(const BmpHeader& header) {
+  ImageHeader promise;
+  promise.size = header.size;
+  promise.unpacked_bytes = header.RowBytes() * static_cast<uint64_t>(header.size.height);
+  promise.more_bytes = promise.unpacked_bytes;  // the file once more
+  return promise;
+}
+
 // Blue, green, red, unused of each value.
 std::array<uint8_t, 4 * 256> Palette(const std::filesystem::path& path, const BmpHeader& header,
                                      const std::vector<uint8_t>& file) {
@@ -70,12 +80,13 @@ std::array<uint8_t, 4 * 256> Palette(const std::filesystem::path& path, const Bm
 
 }  // namespace
 
-ImageSize ReadBmpSize(const ImageSource& source) {
-  return ReadHeader(source.path, source.file.get()).size;
+ImageHeader ReadBmpHeader(const ImageSource& source) {
+  return Promise(ReadHeader(source.path, source.file.get()));
 }
 
 Image<uint8_t> DecodeBmp(const ImageSource& source) {
   const BmpHeader header = ReadHeader(source.path, source.file.get());
+  const MemoryShare share(BytesToDecode(source, Promise(header)));
   const std::vector<uint8_t> file = ReadAll(source);
   const auto num_rows = static_cast<uint64_t>(header.size.height);
   if (header.pixel_offset < kHeaderBytes || header.pixel_offset > file.size() ||

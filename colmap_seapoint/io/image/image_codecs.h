@@ -39,18 +39,31 @@ ImageSource OpenImageFile(const std::filesystem::path& path);
 // `bytes` must outlive the source.
 ImageSource OpenImageBytes(const std::filesystem::path& path, const std::vector<uint8_t>& bytes);
 
-enum class ImageFormat { kJpeg, kPng, kTiff, kPnm, kBmp, kWebp, kJp2 };
+enum class ImageFormat { kJpeg, kPng, kTiff, kPnm, kBmp, kWebp };
 
-// From the first bytes, never from the name; leaves the source at its start. Throws Error for empty
-// and unknown files.
+// From the first bytes, never from the name; leaves the source at its start. Throws Error for
+// empty and unknown files, and for what no camera writes but a few bytes of which can unfold into
+// gigabytes (JPEG 2000).
 ImageFormat DetectImageFormat(const ImageSource& source);
 
-// Size from the header.
-ImageSize ReadJpegSize(const ImageSource& source);
-ImageSize ReadPngSize(const ImageSource& source);
-ImageSize ReadTiffSize(const ImageSource& source);
-ImageSize ReadPnmSize(const ImageSource& source);
-ImageSize ReadBmpSize(const ImageSource& source);
+// How the pixels are packed in the file.
+enum class Packing { kNone, kPackBits, kLzw, kDeflate, kJpeg, kWebp };
+
+// What a header promises.
+struct ImageHeader {
+  ImageSize size;
+  Packing packing = Packing::kNone;
+  uint64_t unpacked_bytes = 0;   // of all samples, as they are stored
+  uint64_t bytes_per_pixel = 6;  // that decoding takes: three channels, and the planes of them
+  uint64_t more_bytes = 0;       // that the format's library takes beside that
+};
+
+ImageHeader ReadJpegHeader(const ImageSource& source);
+ImageHeader ReadPngHeader(const ImageSource& source);
+ImageHeader ReadTiffHeader(const ImageSource& source);
+ImageHeader ReadPnmHeader(const ImageSource& source);
+ImageHeader ReadBmpHeader(const ImageSource& source);
+ImageHeader ReadWebpHeader(const ImageSource& source);
 
 // What to decode: kLuma leaves the chroma out where the file holds luma apart, and gives the same
 // luma as kPlanes. Where the file does not hold luma and chroma (CMYK, RGB), or chroma in a grid
@@ -62,11 +75,12 @@ Image<uint8_t> DecodePng(const ImageSource& source);
 Image<uint8_t> DecodeTiff(const ImageSource& source);
 Image<uint8_t> DecodePnm(const ImageSource& source);
 Image<uint8_t> DecodeBmp(const ImageSource& source);
-// WebP and JPEG 2000, by OpenCV.
-Image<uint8_t> DecodeWithOpenCv(const ImageSource& source, ImageFormat format);
+Image<uint8_t> DecodeWebp(const ImageSource& source);
 
 // Shared by the decoders.
 std::vector<uint8_t> ReadAll(const ImageSource& source);
+// `finding` may be what a library said: where that is about memory, std::bad_alloc is thrown, since
+// nothing is wrong with the picture then.
 [[noreturn]] void ThrowDamagedImage(const std::filesystem::path& path, const std::string& finding);
 // Throws Error when the sides or their product are beyond what we decode.
 ImageSize CheckImageSize(const std::filesystem::path& path, uint64_t width, uint64_t height);

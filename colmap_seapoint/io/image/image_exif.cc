@@ -4,6 +4,7 @@
 #include <cmath>
 #include <exiv2/exiv2.hpp>
 #include <mutex>
+#include <new>
 
 namespace colmap_seapoint {
 namespace {
@@ -74,6 +75,29 @@ std::optional<GeoPosition> Gps(const Exiv2::ExifData& exif) {
   return gps;
 }
 
+ExifInfo InfoOf(const Exiv2::ExifData& exif, ImageSize size) {
+  ExifInfo info;
+  info.focal_length_px = FocalLength(exif, size);
+  const double orientation = Number(exif, "Exif.Image.Orientation").value_or(1);
+  if (orientation >= 1 && orientation <= 8) info.orientation = static_cast<int>(orientation);
+  info.gps = Gps(exif);
+  info.camera_key = CameraKey(exif, size);
+  return info;
+}
+
+// nullopt for what Exiv2 cannot read.
+std::optional<Exiv2::ExifData> TryToRead(const std::filesystem::path& path) {
+  try {
+    const auto image = Exiv2::ImageFactory::open(path.string());
+    image->readMetadata();
+    return image->exifData();
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception&) {  // Exiv2's own errors among them
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 ExifInfo ReadExif(const std::filesystem::path& path, ImageSize size) {
@@ -86,21 +110,14 @@ ExifInfo ReadExif(const std::filesystem::path& path, ImageSize size) {
   }();
   static_cast<void>(is_set_up);
 
-  Exiv2::ExifData exif;
-  try {
-    const auto image = Exiv2::ImageFactory::open(path.string());
-    image->readMetadata();
-    exif = image->exifData();
-  } catch (const std::exception&) {  // Exiv2's own errors among them
-    exif.clear();
+  auto exif = TryToRead(path);
+  if (!exif) {
+    // A disk that fails looks to Exiv2 like damaged EXIF: it is read here, where both are told
+    // apart. If it can be read by now, so may the EXIF.
+    ReadAll(OpenImageFile(path));
+    exif = TryToRead(path);
   }
-  ExifInfo info;
-  info.focal_length_px = FocalLength(exif, size);
-  const double orientation = Number(exif, "Exif.Image.Orientation").value_or(1);
-  if (orientation >= 1 && orientation <= 8) info.orientation = static_cast<int>(orientation);
-  info.gps = Gps(exif);
-  info.camera_key = CameraKey(exif, size);
-  return info;
+  return InfoOf(exif.value_or(Exiv2::ExifData()), size);
 }
 
 }  // namespace colmap_seapoint

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -13,8 +12,13 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/content_hash.h"
+#include "colmap_seapoint/io/files/input_stream.h"
 #include "colmap_seapoint/io/image/image_codecs.h"
 #include "colmap_seapoint/io/image/image_exif.h"
+#include "colmap_seapoint/io/image/image_limits.h"
+#include "colmap_seapoint/system/memory_budget.h"
+#include "colmap_seapoint/system/memory_limit.h"
+#include "colmap_seapoint/system/system_error.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -58,21 +62,9 @@ std::vector<std::string> FindImages(const std::filesystem::path& folder) {
   return names;
 }
 
-// Runs a decoder; too little memory becomes an Error.
-template <typename Decoder>
-auto WithinMemory(const std::filesystem::path& path, Decoder decode) {
-  try {
-    return decode();
-  } catch (const std::bad_alloc&) {
-    throw Error(path.string(), "there is not enough memory to decode it",
-                "make the picture smaller or use a machine with more memory");
-  }
-}
-
 // 1 or 3 channels.
 Image<uint8_t> DecodePixels(const ImageSource& source) {
-  const ImageFormat format = DetectImageFormat(source);
-  switch (format) {
+  switch (DetectImageFormat(source)) {
     case ImageFormat::kJpeg:
       return DecodeJpeg(source);
     case ImageFormat::kPng:
@@ -83,9 +75,11 @@ Image<uint8_t> DecodePixels(const ImageSource& source) {
       return DecodePnm(source);
     case ImageFormat::kBmp:
       return DecodeBmp(source);
-    default:
-      return DecodeWithOpenCv(source, format);
+    case ImageFormat::kWebp:
+      return DecodeWebp(source);
   }
+  SEAPOINT_CHECK(false);
+  return {};
 }
 
 Picture DecodePlanes(const ImageSource& source, JpegContent content) {
@@ -102,24 +96,41 @@ Picture DecodePlanes(const ImageSource& source, JpegContent content) {
   return picture;
 }
 
-ImageSize ReadSize(const ImageSource& source) {
-  const ImageFormat format = DetectImageFormat(source);
-  switch (format) {
+ImageHeader ReadHeader(const ImageSource& source) {
+  switch (DetectImageFormat(source)) {
     case ImageFormat::kJpeg:
-      return ReadJpegSize(source);
+      return ReadJpegHeader(source);
     case ImageFormat::kPng:
-      return ReadPngSize(source);
+      return ReadPngHeader(source);
     case ImageFormat::kTiff:
-      return ReadTiffSize(source);
+      return ReadTiffHeader(source);
     case ImageFormat::kPnm:
-      return ReadPnmSize(source);
+      return ReadPnmHeader(source);
     case ImageFormat::kBmp:
-      return ReadBmpSize(source);
-    default: {  // rare: not worth a header parser each
-      const Image<uint8_t> image = DecodeWithOpenCv(source, format);
-      return {image.width, image.height};
-    }
+      return ReadBmpHeader(source);
+    case ImageFormat::kWebp:
+      return ReadWebpHeader(source);
   }
+  SEAPOINT_CHECK(false);
+  return {};
+}
+
+// The size of a picture that is worth decoding. The formats' libraries take a disk that fails for
+// the end of the file.
+ImageSize ReadSize(const ImageSource& source) {
+  try {
+    const ImageHeader header = ReadHeader(source);
+    BytesToDecode(source, header);
+    return header.size;
+  } catch (const Error&) {
+    if (std::ferror(source.file.get()) != 0) throw ReadError(source.path, EIO);
+    throw;
+  }
+}
+
+bool IsAboutMemory(const std::string& finding) {
+  return finding.find("nsufficient memory") != std::string::npos ||
+         finding.find("ut of memory") != std::string::npos;
 }
 
 cv::Mat AsMat(const Image<uint8_t>& image) {
@@ -139,10 +150,7 @@ Image<uint8_t> Convert(const Image<uint8_t>& image, int num_channels, int code) 
 
 ImageSource OpenImageFile(const std::filesystem::path& path) {
   FileHandle file(std::fopen(path.c_str(), "rb"), &std::fclose);
-  if (file == nullptr) {
-    throw Error(path.string(), std::string("cannot be read (") + std::strerror(errno) + ")",
-                "check the path and the file's permissions");
-  }
+  if (file == nullptr) throw ReadError(path, errno);
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
     throw Error(path.string(), "is no file", "give a picture");
@@ -161,13 +169,12 @@ std::vector<uint8_t> ReadAll(const ImageSource& source) {
   std::rewind(source.file.get());
   std::vector<uint8_t> bytes(source.size);
   bytes.resize(std::fread(bytes.data(), 1, bytes.size(), source.file.get()));
-  if (std::ferror(source.file.get())) {
-    throw Error(source.path.string(), "cannot be read to its end", "check the disk");
-  }
+  if (std::ferror(source.file.get()) != 0) throw ReadError(source.path, errno);
   return bytes;
 }
 
 void ThrowDamagedImage(const std::filesystem::path& path, const std::string& finding) {
+  if (IsAboutMemory(finding)) throw std::bad_alloc();
   throw Error(path.string(), "cannot be decoded whole (" + finding + ")",
               "copy the picture again from its source, or take it out of the folder");
 }
@@ -187,6 +194,7 @@ ImageFormat DetectImageFormat(const ImageSource& source) {
   const std::filesystem::path& path = source.path;
   char head[12] = {0};
   const size_t size = std::fread(head, 1, sizeof(head), source.file.get());
+  if (std::ferror(source.file.get()) != 0) throw ReadError(path, errno);
   std::rewind(source.file.get());
   if (size == 0) {
     throw Error(path.string(), "is empty (zero bytes)",
@@ -205,7 +213,10 @@ ImageFormat DetectImageFormat(const ImageSource& source) {
   if (starts_with("RIFF", 4) && size == 12 && std::memcmp(head + 8, "WEBP", 4) == 0) {
     return ImageFormat::kWebp;
   }
-  if (starts_with("\0\0\0\x0cjP  ", 8)) return ImageFormat::kJp2;
+  if (starts_with("\0\0\0\x0cjP  ", 8) || starts_with("\xff\x4f\xff\x51", 4)) {
+    throw Error(path.string(), "is JPEG 2000, which no camera writes and is not decoded",
+                "convert it to JPEG, PNG or TIFF, or take it out of the folder");
+  }
   if (head[0] == 'P' && head[1] >= '1' && head[1] <= '6') return ImageFormat::kPnm;
   throw Error(path.string(), "is no picture of a known format",
               "convert it to JPEG, PNG or TIFF, or take it out of the folder");
@@ -233,11 +244,7 @@ std::vector<std::string> ListImages(const std::filesystem::path& image_path) {
 }
 
 std::vector<std::string> ReadImageList(const std::filesystem::path& list_path) {
-  std::error_code error;
-  std::ifstream stream(list_path);
-  if (!stream || !std::filesystem::is_regular_file(list_path, error)) {
-    throw Error(list_path.string(), "cannot be read", "check --image_list_path");
-  }
+  InputStream stream(list_path);
   std::vector<std::string> names;
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
@@ -273,7 +280,7 @@ bool IsSafeImageName(const std::string& name) {
 }
 
 ImageInfo ReadImageInfo(const std::filesystem::path& path) {
-  const ImageSize size = WithinMemory(path, [&] { return ReadSize(OpenImageFile(path)); });
+  const ImageSize size = ReadSize(OpenImageFile(path));
   ExifInfo exif = ReadExif(path, size);
   ImageInfo info;
   info.width = size.width;
@@ -287,27 +294,32 @@ ImageInfo ReadImageInfo(const std::filesystem::path& path) {
 
 PictureFile::PictureFile(const std::filesystem::path& path) : path_(path) {
   const ImageSource source = OpenImageFile(path);
-  DetectImageFormat(source);  // what is no picture may be larger than the memory
-  bytes_ = WithinMemory(path, [&] { return ReadAll(source); });
+  DetectImageFormat(source);
+  if (source.size > MaxMemory()) {
+    throw Error(path.string(), "is longer than --max_memory: " + BytesText(source.size),
+                "raise --max_memory, or take it out of the folder");
+  }
+  bytes_ = ReadAll(source);
 }
 
 std::string PictureFile::Hash() const { return HashBytes(bytes_.data(), bytes_.size()); }
 
+uint64_t PictureFile::BytesToDecode() const {
+  return colmap_seapoint::BytesToDecode(OpenImageBytes(path_, bytes_),
+                                        ReadHeader(OpenImageBytes(path_, bytes_)));
+}
+
 GrayImage PictureFile::DecodeGray() const {
-  return WithinMemory(
-      path_, [&] { return DecodePlanes(OpenImageBytes(path_, bytes_), JpegContent::kLuma).luma; });
+  return DecodePlanes(OpenImageBytes(path_, bytes_), JpegContent::kLuma).luma;
 }
 
 Picture PictureFile::Decode() const {
-  return WithinMemory(
-      path_, [&] { return DecodePlanes(OpenImageBytes(path_, bytes_), JpegContent::kPlanes); });
+  return DecodePlanes(OpenImageBytes(path_, bytes_), JpegContent::kPlanes);
 }
 
 ColorImage PictureFile::DecodeColor() const {
-  return WithinMemory(path_, [&] {
-    Image<uint8_t> image = DecodePixels(OpenImageBytes(path_, bytes_));
-    return image.channels == 3 ? image : Convert(image, 3, cv::COLOR_GRAY2RGB);
-  });
+  Image<uint8_t> image = DecodePixels(OpenImageBytes(path_, bytes_));
+  return image.channels == 3 ? image : Convert(image, 3, cv::COLOR_GRAY2RGB);
 }
 
 GrayImage ReadGrayImage(const std::filesystem::path& path) {

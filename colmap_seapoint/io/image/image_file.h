@@ -53,6 +53,9 @@ class PictureFile {
 
   uint64_t Size() const { return bytes_.size(); }  // bytes
   std::string Hash() const;                        // that of HashFile()
+  // The memory that decoding takes, in bytes. Throws Error for what is not worth it: a header that
+  // promises more than the file can hold, or than --max_memory (memory_budget.h) allows.
+  uint64_t BytesToDecode() const;
 
   GrayImage DecodeGray() const;
   // A JPEG's own planes, neither enlarged nor converted; of other formats, and of a JPEG that holds

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "colmap_seapoint/io/image/image_codecs.h"
+#include "colmap_seapoint/io/image/image_limits.h"
+#include "colmap_seapoint/system/memory_budget.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -52,6 +54,15 @@ void OnMessage(j_common_ptr info, int level) {
 
 void PrintNothing(j_common_ptr) {}
 
+// Called again and again while libjpeg reads the scans.
+void OnProgress(j_common_ptr info) {
+  if (reinterpret_cast<j_decompress_ptr>(info)->input_scan_number <= kMaxJpegScans) return;
+  auto* errors = reinterpret_cast<JpegErrors*>(info->err);
+  std::snprintf(errors->message, sizeof(errors->message), "it has more than %d scans",
+                kMaxJpegScans);
+  longjmp(errors->jump, 1);
+}
+
 // Owns the decompressor, so that a longjmp passes no destructor.
 struct JpegDecoder {
   explicit JpegDecoder(const ImageSource& source) : file(source.file.get()) {
@@ -59,6 +70,7 @@ struct JpegDecoder {
     errors.manager.error_exit = OnError;
     errors.manager.emit_message = OnMessage;
     errors.manager.output_message = PrintNothing;
+    progress.progress_monitor = OnProgress;
   }
   ~JpegDecoder() { jpeg_destroy_decompress(&info); }
   JpegDecoder(const JpegDecoder&) = delete;
@@ -66,12 +78,14 @@ struct JpegDecoder {
 
   std::FILE* file;
   jpeg_decompress_struct info{};
+  jpeg_progress_mgr progress{};
   JpegErrors errors;
 };
 
 bool ReadHeader(JpegDecoder* decoder) {
   if (setjmp(decoder->errors.jump) != 0) return false;
   jpeg_create_decompress(&decoder->info);
+  decoder->info.progress = &decoder->progress;
   jpeg_stdio_src(&decoder->info, decoder->file);
   jpeg_read_header(&decoder->info, TRUE);
   return true;
@@ -211,28 +225,44 @@ Picture DecodeAsStored(const std::filesystem::path& path, const ImageSize& size,
   return picture;
 }
 
-ImageSize CheckHeader(const std::filesystem::path& path, JpegDecoder* decoder) {
+ImageHeader CheckHeader(const std::filesystem::path& path, JpegDecoder* decoder) {
   if (!ReadHeader(decoder)) ThrowDamagedImage(path, decoder->errors.message);
   if (decoder->errors.is_damaged) ThrowDamagedImage(path, decoder->errors.message);
-  return CheckImageSize(path, decoder->info.image_width, decoder->info.image_height);
+  const jpeg_decompress_struct& info = decoder->info;
+  ImageHeader header;
+  header.size = CheckImageSize(path, info.image_width, info.image_height);
+  header.packing = Packing::kJpeg;
+  for (int c = 0; c < info.num_components; ++c) {
+    const jpeg_component_info& component = info.comp_info[c];
+    header.unpacked_bytes +=
+        static_cast<uint64_t>(component.width_in_blocks) * component.height_in_blocks * DCTSIZE2;
+  }
+  // Of several scans, libjpeg holds the coefficients of all blocks.
+  if (jpeg_has_multiple_scans(&decoder->info)) {
+    header.more_bytes = header.unpacked_bytes * sizeof(JCOEF);
+  }
+  return header;
 }
 
 }  // namespace
 
-ImageSize ReadJpegSize(const ImageSource& source) {
+ImageHeader ReadJpegHeader(const ImageSource& source) {
   JpegDecoder decoder(source);
   return CheckHeader(source.path, &decoder);
 }
 
 Image<uint8_t> DecodeJpeg(const ImageSource& source) {
   JpegDecoder decoder(source);
-  const ImageSize size = CheckHeader(source.path, &decoder);
-  return DecodeInColor(source.path, size, &decoder);
+  const ImageHeader header = CheckHeader(source.path, &decoder);
+  const MemoryShare share(BytesToDecode(source, header));
+  return DecodeInColor(source.path, header.size, &decoder);
 }
 
 Picture DecodeJpegPlanes(const ImageSource& source, JpegContent content) {
   JpegDecoder decoder(source);
-  const ImageSize size = CheckHeader(source.path, &decoder);
+  const ImageHeader header = CheckHeader(source.path, &decoder);
+  const ImageSize size = header.size;
+  const MemoryShare share(BytesToDecode(source, header));
   Picture picture;
   if (HoldsPlanes(decoder.info)) {
     if (content == JpegContent::kPlanes) return DecodeAsStored(source.path, size, &decoder);

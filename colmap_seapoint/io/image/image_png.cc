@@ -4,13 +4,11 @@
 #include <cstring>
 
 #include "colmap_seapoint/io/image/image_codecs.h"
+#include "colmap_seapoint/io/image/image_limits.h"
+#include "colmap_seapoint/system/memory_budget.h"
 
 namespace colmap_seapoint {
 namespace {
-
-// Deflate packs at most 1032 to 1: a header that promises more is false.
-constexpr uint64_t kMaxPackRatio = 1040;
-constexpr size_t kSignatureBytes = 8;
 
 struct PngErrors {
   jmp_buf jump;
@@ -67,28 +65,29 @@ bool ReadRows(PngDecoder* decoder, png_bytepp rows) {
   return true;
 }
 
-ImageSize CheckHeader(const std::filesystem::path& path, PngDecoder* decoder) {
+ImageHeader CheckHeader(const std::filesystem::path& path, PngDecoder* decoder) {
   if (!ReadHeader(decoder)) ThrowDamagedImage(path, decoder->errors.message);
   const uint64_t width = png_get_image_width(decoder->png, decoder->info);
   const uint64_t height = png_get_image_height(decoder->png, decoder->info);
-  return CheckImageSize(path, width, height);
+  ImageHeader header;
+  header.size = CheckImageSize(path, width, height);
+  header.packing = Packing::kDeflate;
+  header.unpacked_bytes = png_get_rowbytes(decoder->png, decoder->info) * height;
+  return header;
 }
 
 }  // namespace
 
-ImageSize ReadPngSize(const ImageSource& source) {
+ImageHeader ReadPngHeader(const ImageSource& source) {
   PngDecoder decoder(source);
   return CheckHeader(source.path, &decoder);
 }
 
 Image<uint8_t> DecodePng(const ImageSource& source) {
   PngDecoder decoder(source);
-  const ImageSize size = CheckHeader(source.path, &decoder);
-  const uint64_t raw_bytes =
-      png_get_rowbytes(decoder.png, decoder.info) * static_cast<uint64_t>(size.height);
-  if (raw_bytes / kMaxPackRatio > source.size + kSignatureBytes) {
-    ThrowDamagedImage(source.path, "the file is too short for its size in pixels");
-  }
+  const ImageHeader header = CheckHeader(source.path, &decoder);
+  const ImageSize size = header.size;
+  const MemoryShare share(BytesToDecode(source, header));
   if (!Start(&decoder)) ThrowDamagedImage(source.path, decoder.errors.message);
   Image<uint8_t> image(size.width, size.height, png_get_channels(decoder.png, decoder.info));
   if (png_get_rowbytes(decoder.png, decoder.info) != image.Stride()) {

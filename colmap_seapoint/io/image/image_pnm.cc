@@ -1,6 +1,8 @@
 #include <cctype>
 
 #include "colmap_seapoint/io/image/image_codecs.h"
+#include "colmap_seapoint/io/image/image_limits.h"
+#include "colmap_seapoint/system/memory_budget.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -11,6 +13,8 @@ struct PnmHeader {
   int channels = 1;
   ImageSize size;
   uint32_t max_value = 255;
+
+  size_t SampleBytes() const { return max_value > 255 ? 2 : 1; }
 };
 
 // The next number, after blanks and comments.
@@ -53,21 +57,25 @@ PnmHeader ReadHeader(const std::filesystem::path& path, std::FILE* file) {
   return header;
 }
 
+ImageHeader Promise(const PnmHeader& header) {
+  ImageHeader promise;
+  promise.size = header.size;
+  promise.unpacked_bytes = static_cast<uint64_t>(header.size.width) *
+                           static_cast<uint64_t>(header.size.height) *
+                           static_cast<uint64_t>(header.channels) * header.SampleBytes();
+  return promise;
+}
+
 }  // namespace
 
-ImageSize ReadPnmSize(const ImageSource& source) {
-  return ReadHeader(source.path, source.file.get()).size;
+ImageHeader ReadPnmHeader(const ImageSource& source) {
+  return Promise(ReadHeader(source.path, source.file.get()));
 }
 
 Image<uint8_t> DecodePnm(const ImageSource& source) {
   const PnmHeader header = ReadHeader(source.path, source.file.get());
-  const size_t sample_bytes = header.max_value > 255 ? 2 : 1;
-  const uint64_t num_samples = static_cast<uint64_t>(header.size.width) *
-                               static_cast<uint64_t>(header.size.height) *
-                               static_cast<uint64_t>(header.channels);
-  if (source.size < num_samples * sample_bytes) {
-    ThrowDamagedImage(source.path, "the file ends too early");
-  }
+  const MemoryShare share(BytesToDecode(source, Promise(header)));
+  const size_t sample_bytes = header.SampleBytes();
   Image<uint8_t> image(header.size.width, header.size.height, header.channels);
   std::vector<uint8_t> row(image.Stride() * sample_bytes);
   for (int y = 0; y < image.height; ++y) {

@@ -4,11 +4,11 @@
 #include <cstdio>
 
 #include "colmap_seapoint/io/image/image_codecs.h"
+#include "colmap_seapoint/io/image/image_limits.h"
+#include "colmap_seapoint/system/memory_budget.h"
 
 namespace colmap_seapoint {
 namespace {
-
-constexpr tmsize_t kMaxAllocation = tmsize_t{1} << 31;
 
 struct TiffErrors {
   std::string first;
@@ -51,7 +51,7 @@ TiffHandle OpenTiff(const ImageSource& source, TiffErrors* errors) {
   TIFFOpenOptions* options = TIFFOpenOptionsAlloc();
   TIFFOpenOptionsSetErrorHandlerExtR(options, OnError, errors);
   TIFFOpenOptionsSetWarningHandlerExtR(options, OnWarning, nullptr);
-  TIFFOpenOptionsSetMaxSingleMemAlloc(options, kMaxAllocation);
+  TIFFOpenOptionsSetMaxSingleMemAlloc(options, static_cast<tmsize_t>(MaxMemory()));
   // 'm': no memory mapping, which would crash when the file shrinks meanwhile.
   TiffHandle tiff(
       TIFFClientOpenExt(source.path.c_str(), "rm", const_cast<ImageSource*>(&source), Read,
@@ -62,11 +62,35 @@ TiffHandle OpenTiff(const ImageSource& source, TiffErrors* errors) {
   return tiff;
 }
 
-ImageSize CheckHeader(const std::filesystem::path& path, TIFF* tiff) {
+Packing PackingOf(uint16_t compression) {
+  switch (compression) {
+    case COMPRESSION_NONE:
+      return Packing::kNone;
+    case COMPRESSION_PACKBITS:
+      return Packing::kPackBits;
+    case COMPRESSION_LZW:
+      return Packing::kLzw;
+    case COMPRESSION_JPEG:
+    case COMPRESSION_OJPEG:
+      return Packing::kJpeg;
+    default:  // others are held to the same: no photograph comes near it
+      return Packing::kDeflate;
+  }
+}
+
+ImageHeader CheckHeader(const std::filesystem::path& path, TIFF* tiff) {
   uint32_t width = 0, height = 0;
+  uint16_t compression = COMPRESSION_NONE;
   TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &width);
   TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &height);
-  return CheckImageSize(path, width, height);
+  TIFFGetFieldDefaulted(tiff, TIFFTAG_COMPRESSION, &compression);
+  ImageHeader header;
+  header.size = CheckImageSize(path, width, height);
+  header.packing = PackingOf(compression);
+  header.unpacked_bytes = TIFFScanlineSize64(tiff) * height;
+  header.bytes_per_pixel += sizeof(uint32_t);  // libtiff's raster
+  header.more_bytes = TIFFIsTiled(tiff) ? TIFFTileSize64(tiff) : TIFFStripSize64(tiff);
+  return header;
 }
 
 bool IsGrey(TIFF* tiff) {
@@ -79,7 +103,7 @@ bool IsGrey(TIFF* tiff) {
 
 }  // namespace
 
-ImageSize ReadTiffSize(const ImageSource& source) {
+ImageHeader ReadTiffHeader(const ImageSource& source) {
   TiffErrors errors;
   return CheckHeader(source.path, OpenTiff(source, &errors).get());
 }
@@ -87,7 +111,9 @@ ImageSize ReadTiffSize(const ImageSource& source) {
 Image<uint8_t> DecodeTiff(const ImageSource& source) {
   TiffErrors errors;
   const TiffHandle tiff = OpenTiff(source, &errors);
-  const ImageSize size = CheckHeader(source.path, tiff.get());
+  const ImageHeader header = CheckHeader(source.path, tiff.get());
+  const ImageSize size = header.size;
+  const MemoryShare share(BytesToDecode(source, header));
   char message[1024] = "";
   if (!TIFFRGBAImageOK(tiff.get(), message)) ThrowDamagedImage(source.path, message);
   TIFFRGBAImage reader;

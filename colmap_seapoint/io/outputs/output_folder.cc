@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 #include <system_error>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/files/input_stream.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -47,15 +47,15 @@ bool IsBelow(const fs::path& name) {
 
 std::set<std::string> ReadNames(const fs::path& folder) {
   const fs::path path = folder / kNamesFile;
-  std::ifstream file(path);
+  const auto file = OpenIfThere(path);
   if (!file) return {};
   std::string line;
   std::set<std::string> names;
-  if (!std::getline(file, line) || line != kFirstLine) {
+  if (!std::getline(*file, line) || line != kFirstLine) {
     throw Error(path.string(), "is no list of ours, or damaged",
                 "move it away; without it, what is in the folder is left alone");
   }
-  while (std::getline(file, line)) {
+  while (std::getline(*file, line)) {
     if (const std::string name = Name(line); IsBelow(name)) names.insert(name);
   }
   return names;

@@ -1,10 +1,10 @@
 #include "colmap_seapoint/io/outputs/replaceable_file.h"
 
-#include <fstream>
 #include <iterator>
 #include <system_error>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/io/files/input_stream.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -15,7 +15,7 @@ constexpr std::streamsize kBeginning = 4096;  // bytes
 
 std::string Beginning(const fs::path& file) {
   std::string text(kBeginning, '\0');
-  std::ifstream stream(file, std::ios::binary);
+  InputStream stream(file);
   stream.read(text.data(), kBeginning);
   text.resize(static_cast<size_t>(stream.gcount()));
   return text;

@@ -7,10 +7,10 @@
 
 #include <cerrno>
 #include <chrono>
-#include <cstring>
 #include <thread>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/system/system_error.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -45,8 +45,7 @@ RunLock::RunLock(const std::filesystem::path& path, const std::filesystem::path&
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     descriptor_ = open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (descriptor_ < 0) {
-      throw Error(path.string(), std::string("cannot be created (") + std::strerror(errno) + ")",
-                  remedy);
+      throw Error(path.string(), "cannot be created (" + SystemText(errno) + ")", remedy);
     }
     const Attempt result = TryLock(path, descriptor_);
     if (result == Attempt::kLocked) return;

@@ -47,7 +47,7 @@ TEST(PictureFile, HashAndPixelsComeFromTheSameBytes) {
 
 TEST(PictureFile, EveryFormatDecodesAgainAndAgain) {
   const TempDir dir;
-  for (const char* name : {"a.jpg", "a.png", "a.tif", "a.bmp", "a.ppm", "a.webp", "a.jp2"}) {
+  for (const char* name : {"a.jpg", "a.png", "a.tif", "a.bmp", "a.ppm", "a.webp"}) {
     WriteImage(dir / name, MakeColor(60, 40));
     const PictureFile file(dir / name);
     EXPECT_EQ(file.Size(), std::filesystem::file_size(dir / name)) << name;
@@ -131,7 +131,7 @@ TEST(Images, LosslessFormatsKeepEveryPixel) {
 TEST(Images, LossyFormatsAreClose) {
   const TempDir dir;
   const ColorImage color = MakeColor(64, 48);
-  for (const char* name : {"a.jpg", "a.webp", "a.jp2"}) {
+  for (const char* name : {"a.jpg", "a.webp"}) {
     WriteImage(dir / name, color);
     const ColorImage read = ReadColorImage(dir / name);
     ASSERT_EQ(read.data.size(), color.data.size());
