@@ -11,7 +11,7 @@ namespace colmap_seapoint {
 
 // Raise it whenever the same model, pictures and options give another cloud than before;
 // tests/densify/densification_version_test.cc fails until it is.
-inline constexpr char kDensificationVersion[] = "8";
+inline constexpr char kDensificationVersion[] = "9";
 
 // Densifies the model's pictures in the natural order of their names ("2" before "10"), then, with
 // options.completion, what any two of them see and no pair has covered (ours). With a rig, its
