@@ -15,10 +15,8 @@ namespace colmap_seapoint {
 
 namespace {
 
-// Where there is texture, the small window shows more of the relief and comes nearer to depth
-// edges; the larger one takes what it leaves.
-constexpr int kSmallWindow = 5;
-constexpr float kSmallZncc = 0.1f;  // more than the larger one's: few pixels agree by chance
+constexpr int kSmallWindow = 5;      // near depth edges, where the larger one fits on no side
+constexpr float kSmallZncc = 0.15f;  // more than the larger one's: few pixels agree by chance
 
 // Samples, the last one beyond.
 struct SampleBox {
@@ -97,14 +95,13 @@ class Refinement {
     region.first_row = grid.PixelY(samples.begin_b) - top;
     region.row_step = grid.step;
     if (region.first_row >= region.height) return;
-    if (options_.window_size > kSmallWindow &&
-        !MatchRegion(layer, region, samples, kSmallWindow, options_.min_zncc + kSmallZncc)) {
-      return;
+    if (MatchRegion(layer, region, samples, options_.window_size, options_.min_zncc) &&
+        options_.window_size > kSmallWindow) {
+      MatchRegion(layer, region, samples, kSmallWindow, options_.min_zncc + kSmallZncc);
     }
-    MatchRegion(layer, region, samples, options_.window_size, options_.min_zncc);
   }
 
-  // Fills samples that have nothing better, the larger window only those that have nothing; returns
+  // Fills samples that have nothing better, the small window only those that have nothing; returns
   // whether any is left empty.
   bool MatchRegion(const SurfaceLayer& layer, const tile::Region& region, const SampleBox& samples,
                    int window, float min_zncc) {
@@ -127,7 +124,7 @@ class Refinement {
         const bool held = result_.disparity[sample] > 0;
         const float disparity = tile::PredictedAt(layer.surface, x, y) + residual[at];
         if (score[at] <= 0 || score[at] < min_zncc || disparity <= 0 ||
-            score[at] <= result_.score[sample] || (held && window > kSmallWindow)) {
+            score[at] <= result_.score[sample] || (held && window != options_.window_size)) {
           any_empty = any_empty || !held;
           continue;
         }

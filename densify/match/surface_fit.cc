@@ -12,7 +12,7 @@ namespace colmap_seapoint {
 namespace {
 
 // Deviations of the wide plane against the narrow one's that noise alone does not bring about.
-constexpr float kRough = 1.6f, kRoughLeast = 0.05f;  // times; plus pixels
+constexpr float kRough = 1.8f, kRoughLeast = 0.05f;  // times; plus pixels
 
 // From the scatter about the planes, which rows begin .. end - 1 of the deviation hold.
 void CompleteDeviation(const PartialDisparity& partial, int begin, int end, int full_support,

@@ -24,8 +24,12 @@ ChildOutput::ChildOutput(const ChildOutputOptions& options)
     : options_(options), next_silence_seconds_(options.silence_seconds) {
   if (options_.log_path.empty()) return;
   // Anew, so that a link of that name is replaced and what it leads to is not written over.
-  unlink(options_.log_path.c_str());
-  log_ = open(options_.log_path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  std::error_code ignored;
+  const auto type = std::filesystem::symlink_status(options_.log_path, ignored).type();
+  const bool is_new = type != std::filesystem::file_type::character;
+  if (is_new) unlink(options_.log_path.c_str());
+  log_ =
+      open(options_.log_path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | (is_new ? O_EXCL : 0), 0666);
   if (log_ < 0) throw SystemError(options_.log_path, "cannot be created", errno);
 }
 
