@@ -24,9 +24,9 @@ constexpr double kLeastNoise = 0.03;                 // pixels: no picture measu
 constexpr double kAgrees = 0.7, kContradicts = 0.5;  // correlation
 constexpr double kMinFacing = 0.3;  // cosine of the angle between normal and ray, of a witness
 constexpr double kMaxAside = 1.5;   // its angle to the nearer of the pair's rays, of their parallax
-constexpr double kLeastTexture = 1;      // grey values squared, of a patch that can be told
-constexpr double kLeastGradient = 1e-3;  // of a patch, squared, against its texture, a pixel
-constexpr double kSure = 2;              // deviations of a move that is there
+constexpr double kLeastTexture = 1;      // variance of the grey values of a patch with texture
+constexpr double kLeastGradient = 1e-3;  // squared, a pixel of a step, against that variance
+constexpr double kSure = 2;              // deviations that noise alone does not move a patch
 
 // Of a contradicted sample's deviation: so unsure, it is left to other pairs as long as there are
 // any that may measure it.
@@ -96,7 +96,7 @@ Likeness Liken(const patch::Sums& s, const Eigen::Vector2d& step, double num_see
 struct LocalMap {
   double x = 0, y = 0, disparity = -1;     // rect pixels; around these
   Eigen::Vector2d at, across, down, pace;  // pixels; a pixel of x, y, disparity
-  bool is_shown = false;                   // at a scale that can be compared
+  bool is_shown = false;                   // within the picture; else only the first three hold
   bool is_witness = false;                 // whose disagreement counts
 };
 
@@ -177,7 +177,7 @@ class FurtherPicture {
       if (!SumAt(here + move * map.pace, axes, of, &sums)) return {};
       likeness = Liken(sums, step, num_seen);
       move += likeness.move;
-      if (std::abs(move) * pixels_a_unit >= kMaxMove) {
+      if (std::abs(move) * pixels_a_unit >= kMaxMove) {  // maybe for want of a gradient
         return std::abs(move) > kSure * likeness.deviation ? against : Opinion();
       }
       if (std::abs(likeness.move) * pixels_a_unit < kNear) break;
@@ -215,7 +215,7 @@ class FurtherPicture {
   const Eigen::Vector3d origin_;  // of the rect frame, in the camera's
 };
 
-// Samples of a block, one after the other.
+// Samples of a block, one after the other, so that maps serve for many.
 class BlockJudge {
  public:
   BlockJudge(const RectPicture& picture1, const PartialSurface& surface,

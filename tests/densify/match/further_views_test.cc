@@ -430,7 +430,9 @@ TEST(FurtherViewsTest, PatchesLieWithinThePicture) {
   for (size_t i = 0; i < pair.truth.size(); ++i) {
     pair.measured.disparity[i] = static_cast<float>(pair.truth[i]);
   }
-  const int a = pair.measured.grid.width / 2, b = pair.measured.grid.height / 2;
+  // The first of its block of 8 x 8 pixels: the others ask where the further picture shows that
+  // one.
+  const int a = pair.measured.grid.width / 8 * 4, b = pair.measured.grid.height / 8 * 4;
   const auto sample = static_cast<size_t>(b * pair.measured.grid.width + a);
   ASSERT_GT(pair.truth[sample], 0);
   const auto is_measured_at = [&](const Eigen::Vector2d& pixel) {
