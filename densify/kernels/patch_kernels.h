@@ -40,8 +40,8 @@ struct Sums {
 // Those of the template alone.
 Sums SumTemplate(const Template& of);
 
-// Adds those of `other`. The whole placed patch must lie within the picture, one pixel from its
-// last column and row.
+// Adds those of `other`. All of the placed patch must lie at least a pixel within the picture: from
+// the centres of its second column and row to, not quite, those of its last ones.
 void SumOther(const Template& of, const GrayImage& picture, const Placement& placement, Sums* sums);
 
 }  // namespace patch

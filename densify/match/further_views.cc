@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "colmap_seapoint/base/parallel.h"
@@ -23,6 +24,13 @@ constexpr double kLeastNoise = 0.03;                 // pixels: no picture measu
 constexpr double kAgrees = 0.7, kContradicts = 0.5;  // correlation
 constexpr double kMinFacing = 0.3;  // cosine of the angle between normal and ray, of a witness
 constexpr double kMaxAside = 1.5;   // its angle to the nearer of the pair's rays, of their parallax
+constexpr double kLeastTexture = 1;      // variance of the grey values of a patch with texture
+constexpr double kLeastGradient = 1e-3;  // squared, a pixel of a step, against that variance
+constexpr double kSure = 2;              // deviations that noise alone does not move a patch
+
+// Of a contradicted sample's deviation: so unsure, it is left to other pairs as long as there are
+// any that may measure it.
+constexpr float kDoubt = 4;
 
 double AngleBetween(const Eigen::Vector3d& unit1, const Eigen::Vector3d& unit2) {
   return 2 * std::asin(std::min(1.0, 0.5 * (unit1 - unit2).norm()));
@@ -33,10 +41,6 @@ struct Sample {
   double disparity, slope_x, slope_y;
 };
 
-// Of a contradicted sample's deviation: so unsure, it is left to other pairs as long as there are
-// any that may measure it.
-constexpr float kDoubt = 4;
-
 // What a further picture says of a sample.
 struct Opinion {
   double disparity = 0;  // 0: none
@@ -44,44 +48,55 @@ struct Opinion {
   bool contradicts = false;
 };
 
-// How far a patch must move, in units of `step` (template pixels), to look most like the other.
-struct Move {
-  double units = 0, deviation = 0, score = -1;
+// Sum of the products of two quantities of a patch, each less its mean.
+double Centered(int32_t products, double sum1, double sum2) {
+  return products - sum1 * sum2 / patch::kPixels;
+}
+
+bool HasTexture(const patch::Sums& sums) {
+  return Centered(sums.gray_gray, sums.gray, sums.gray) > kLeastTexture * patch::kPixels;
+}
+
+// How alike a patch and its place in another picture are, and how far it must move, in units of
+// `step` (template pixels), to be most alike.
+struct Likeness {
+  double score = 0;  // correlation before the move
+  double move = 0, deviation = std::numeric_limits<double>::infinity();
 };
 
-// nullopt where one of the two, or the gradient along the step, has no texture.
-std::optional<Move> FindMove(const patch::Sums& s, const Eigen::Vector2d& step) {
-  constexpr double n = patch::kPixels;
-  const auto centered = [](int32_t product, double a, double b) { return product - a * b / n; };
-  const double spread = centered(s.gray_gray, s.gray, s.gray);
-  const double other_spread = centered(s.other_other, s.other, s.other);
-  const double common = centered(s.gray_other, s.gray, s.other);
-  if (!(spread > n && other_spread > n && common > 0)) return std::nullopt;
+// Of a patch with texture. `num_seen`: pixels of the other picture that the patch covers, at most
+// its own. Without a gradient along the step, the deviation says that the move is not known.
+Likeness Liken(const patch::Sums& s, const Eigen::Vector2d& step, double num_seen) {
+  Likeness likeness;
+  const double spread = Centered(s.gray_gray, s.gray, s.gray);
+  const double other_spread = Centered(s.other_other, s.other, s.other);
+  const double common = Centered(s.gray_other, s.gray, s.other);
+  if (!(other_spread > 0 && common > 0)) return likeness;
+  likeness.score = common / std::sqrt(spread * other_spread);
   // The sums' differences are twice the gradient.
   const Eigen::Vector2d half = step / 2;
-  const Eigen::Vector2d with_gray(centered(s.gray_across, s.gray, s.across),
-                                  centered(s.gray_down, s.gray, s.down));
-  const Eigen::Vector2d with_other(centered(s.across_other, s.across, s.other),
-                                   centered(s.down_other, s.down, s.other));
+  const Eigen::Vector2d with_gray(Centered(s.gray_across, s.gray, s.across),
+                                  Centered(s.gray_down, s.gray, s.down));
+  const Eigen::Vector2d with_other(Centered(s.across_other, s.across, s.other),
+                                   Centered(s.down_other, s.down, s.other));
+  const double across_down = Centered(s.across_down, s.across, s.down);
   Eigen::Matrix2d gradient;
-  gradient << centered(s.across_across, s.across, s.across),
-      centered(s.across_down, s.across, s.down), centered(s.across_down, s.across, s.down),
-      centered(s.down_down, s.down, s.down);
+  gradient << Centered(s.across_across, s.across, s.across), across_down, across_down,
+      Centered(s.down_down, s.down, s.down);
   const double power = half.dot(gradient * half);
-  if (!(power > 1e-3 * spread * step.squaredNorm())) return std::nullopt;
-  Move move;
-  move.score = common / std::sqrt(spread * other_spread);
-  move.units = half.dot(with_gray - common / other_spread * with_other) / power;
-  // As that of tile::Match: what the two differ in is noise of its own in each pixel.
-  move.deviation = std::sqrt(2 * std::max(0.0, 1 - move.score) * spread / (n * power));
-  return move;
+  if (!(power > kLeastGradient * spread * step.squaredNorm())) return likeness;
+  likeness.move = half.dot(with_gray - common / other_spread * with_other) / power;
+  // As that of tile::Match: what the two differ in is noise of its own in each pixel seen.
+  likeness.deviation =
+      std::sqrt(2 * std::max(0.0, 1 - likeness.score) * spread / (num_seen * power));
+  return likeness;
 }
 
 // Where a further picture shows what lies around a sample, linear in place and disparity.
 struct LocalMap {
   double x = 0, y = 0, disparity = -1;     // rect pixels; around these
   Eigen::Vector2d at, across, down, pace;  // pixels; a pixel of x, y, disparity
-  bool is_shown = false;                   // at a scale that can be compared
+  bool is_shown = false;                   // within the picture; else only the first three hold
   bool is_witness = false;                 // whose disagreement counts
 };
 
@@ -151,31 +166,36 @@ class FurtherPicture {
   Opinion Compare(const patch::Template& of, const patch::Sums& template_sums,
                   const Eigen::Vector2d& here, const Eigen::Matrix2d& axes, const LocalMap& map,
                   double predicted) const {
+    const Opinion against{0, 0, map.is_witness};
     const Eigen::Vector2d step = axes.inverse() * map.pace;
     const double pixels_a_unit = step.norm();
-    double units = 0;
-    std::optional<Move> move;
+    const double num_seen = patch::kPixels * std::min(1.0, std::abs(axes.determinant()));
+    double move = 0;
+    Likeness likeness;
     for (int look = 0; look < 2; ++look) {
       patch::Sums sums = template_sums;
-      if (!SumAt(here + units * map.pace, axes, of, &sums)) return {};
-      move = FindMove(sums, step);
-      if (!move) return {0, 0, map.is_witness};
-      units += move->units;
-      if (!(std::abs(units) * pixels_a_unit < kMaxMove)) return {0, 0, map.is_witness};
-      if (std::abs(move->units) * pixels_a_unit < kNear) break;
+      if (!SumAt(here + move * map.pace, axes, of, &sums)) return {};
+      likeness = Liken(sums, step, num_seen);
+      move += likeness.move;
+      if (std::abs(move) * pixels_a_unit >= kMaxMove) {  // maybe for want of a gradient
+        return std::abs(move) > kSure * likeness.deviation ? against : Opinion();
+      }
+      if (std::abs(likeness.move) * pixels_a_unit < kNear) break;
     }
-    if (move->score < kAgrees) return {0, 0, map.is_witness && move->score < kContradicts};
-    return {predicted + units, std::hypot(move->deviation, kLeastNoise / pixels_a_unit), false};
+    if (likeness.score < kContradicts) return against;
+    if (likeness.score < kAgrees || std::isinf(likeness.deviation)) return {};
+    return {predicted + move, std::hypot(likeness.deviation, kLeastNoise / pixels_a_unit), false};
   }
 
   // False where the patch, placed there, reaches beyond the picture.
   bool SumAt(const Eigen::Vector2d& at, const Eigen::Matrix2d& axes, const patch::Template& of,
              patch::Sums* sums) const {
-    constexpr double kFar = patch::kBefore + 1;  // template pixels, with what bilinear weights need
-    const double reach_x = kFar * (std::abs(axes(0, 0)) + std::abs(axes(0, 1))) + 1;
-    const double reach_y = kFar * (std::abs(axes(1, 0)) + std::abs(axes(1, 1))) + 1;
-    if (!(at.x() > reach_x && at.y() > reach_y && at.x() < luma_.width - reach_x &&
-          at.y() < luma_.height - reach_y)) {
+    // To the corner of a pixel more than the patch has, and to the centre of the picture's second
+    // pixel, from where bilinear weights are there on any side (patch::SumOther).
+    const Eigen::Vector2d reach =
+        (patch::kBefore + 1) * axes.cwiseAbs().rowwise().sum() + Eigen::Vector2d(1.5, 1.5);
+    if (!(at.x() > reach.x() && at.y() > reach.y() && at.x() < luma_.width - reach.x() &&
+          at.y() < luma_.height - reach.y())) {
       return false;
     }
     const auto fixed = [](double value) { return static_cast<int32_t>(std::lround(value)); };
@@ -195,7 +215,7 @@ class FurtherPicture {
   const Eigen::Vector3d origin_;  // of the rect frame, in the camera's
 };
 
-// Samples of a block, one after the other.
+// Samples of a block, one after the other, so that maps serve for many.
 class BlockJudge {
  public:
   BlockJudge(const RectPicture& picture1, const PartialSurface& surface,
@@ -227,6 +247,7 @@ class BlockJudge {
  private:
   void Judge(const Sample& sample, size_t idx) {
     const patch::Sums sums = patch::SumTemplate(template_);
+    if (!HasTexture(sums)) return;
     const double own = std::hypot(static_cast<double>(measured_->deviation[idx]), kLeastNoise);
     double weight = 1 / (own * own), sum = weight * static_cast<double>(measured_->disparity[idx]);
     int num_agree = 0, num_contradict = 0;
@@ -243,7 +264,9 @@ class BlockJudge {
       measured_->deviation[idx] *= kDoubt;
     } else if (num_agree > 0) {
       measured_->disparity[idx] = static_cast<float>(sum / weight);
-      measured_->deviation[idx] = static_cast<float>(1 / std::sqrt(weight));
+      // Never less sure than alone, which may be less than kLeastNoise.
+      measured_->deviation[idx] =
+          std::min(measured_->deviation[idx], static_cast<float>(1 / std::sqrt(weight)));
     }
   }
 

@@ -229,6 +229,45 @@ TEST(DensifySequenceTest, UnreadablePictureIsLeftOutAndTheRestGoesOn) {
   }
 }
 
+// Of three pictures, the one that is not of the first pair has its say about it: the points behind
+// a fish in it are less sure. A third picture that cannot be read says nothing.
+TEST(DensifySequenceTest, AThirdPictureHasItsSay) {
+  PartialDensificationOptions options;
+  options.min_confidence = 0;
+  Strip strip(3);
+  const Outcome clear = Densify(&strip, options);
+  const int idx1 = clear.clouds[0].image_idx1, idx2 = clear.clouds[0].image_idx2;
+  const int third = 3 - idx1 - idx2;
+  const Eigen::Vector2d center(120, 90);
+  Strip with_fish(3);
+  with_fish.HideBehindFish(third, center, 30);
+  const Outcome hidden = Densify(&with_fish, options);
+  ASSERT_EQ(hidden.clouds[0].image_idx1, idx1);
+  ASSERT_EQ(hidden.clouds[0].image_idx2, idx2);
+
+  const Viewpoint& view = strip.At(third);
+  const auto mean_confidence = [&](const Outcome& outcome, bool behind) {
+    double sum = 0, count = 0;
+    for (const DensePoint& point : outcome.clouds[0].points) {
+      const auto pixel = view.camera.ImgFromCam(view.cam_from_world * point.xyz.cast<double>());
+      const double off = pixel ? (*pixel - center).lpNorm<Eigen::Infinity>() : 1e9;
+      if (behind ? off > 20 : off < 50) continue;
+      sum += static_cast<double>(point.confidence);
+      ++count;
+    }
+    EXPECT_GT(count, 500) << behind;
+    return sum / count;
+  };
+  strip.MakeUnreadable(third);
+  const Outcome without = Densify(&strip, options);
+  ASSERT_EQ(without.clouds.size(), 1u);
+  EXPECT_EQ(without.report.left_out.size(), 1u);
+  EXPECT_LT(mean_confidence(hidden, true), mean_confidence(without, true));
+  EXPECT_LT(mean_confidence(without, true), mean_confidence(clear, true));
+  EXPECT_LT(mean_confidence(without, false), mean_confidence(clear, false));
+  EXPECT_EQ(mean_confidence(hidden, false), mean_confidence(clear, false));
+}
+
 TEST(DensifySequenceTest, NothingToDensify) {
   for (const int num_pictures : {0, 1}) {
     Strip strip(num_pictures);

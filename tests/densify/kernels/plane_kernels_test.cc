@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
 #include <vector>
 
@@ -186,6 +187,67 @@ TEST(SurfaceFitTest, SlopesAreAPixel) {
         ASSERT_NEAR(surface.slope_y[i], -0.3, 1e-4);
         ASSERT_NEAR(surface.disparity[i], partial.disparity[i], 1e-3);
       }
+    }
+  }
+}
+
+// Disparities that depend on the column only, with noise.
+PartialDisparity Profile(double noise, const std::function<double(int x)>& profile) {
+  std::mt19937 generator(6);
+  std::normal_distribution<double> off(0, noise);
+  PartialDisparity partial = RandomPartial(1);
+  for (size_t i = 0; i < partial.disparity.size(); ++i) {
+    const int x = static_cast<int>(i % static_cast<size_t>(partial.grid.width));
+    partial.disparity[i] = static_cast<float>(profile(x) + off(generator));
+  }
+  partial.deviation.assign(partial.grid.Size(), static_cast<float>(noise));
+  return partial;
+}
+
+// Noise alone does not make a plane rough.
+TEST(RoughSurfaceTest, APlaneIsFittedAsOne) {
+  for (const double noise : {0.02, 0.1, 0.3}) {
+    for (int radius = 2; radius <= 4; ++radius) {
+      const PartialDisparity partial = Profile(noise, [](int x) { return 300 + 0.25 * x; });
+      const PartialSurface plane = FitSurface(partial, radius, 0.75f, 2);
+      const PartialSurface rough = FitRoughSurface(partial, radius, 0.75f, 2);
+      int num_other = 0;
+      for (size_t i = 0; i < plane.grid.Size(); ++i) {
+        num_other += rough.disparity[i] != plane.disparity[i] ||
+                     rough.slope_x[i] != plane.slope_x[i] || rough.slope_y[i] != plane.slope_y[i];
+      }
+      EXPECT_LT(num_other, 0.01 * static_cast<double>(plane.grid.Size())) << noise << " " << radius;
+    }
+  }
+}
+
+// The large plane cuts a ridge off, by up to 0.8 pixels here, the small one by less. What lies far
+// from it is not rough, and how sure it is remains what the large plane says.
+TEST(RoughSurfaceTest, ARidgeKeepsMoreOfItsHeight) {
+  constexpr int kRidge = 65;
+  for (const double slope : {0.3, 0.5}) {
+    const auto truth = [slope](int x) { return 300 - slope * std::abs(x - kRidge); };
+    const PartialDisparity partial = Profile(0.03, truth);
+    for (int radius = 2; radius <= 4; ++radius) {
+      const PartialSurface plane = FitSurface(partial, radius, 0.75f, 2);
+      const PartialSurface rough = FitRoughSurface(partial, radius, 0.75f, 2);
+      double of_plane = 0, of_rough = 0;
+      for (size_t i = 0; i < plane.grid.Size(); ++i) {
+        const int x = static_cast<int>(i % static_cast<size_t>(plane.grid.width));
+        if (std::abs(x - kRidge) > radius) {
+          ASSERT_EQ(rough.disparity[i], plane.disparity[i]) << x;
+        } else if (std::abs(x - kRidge) <= 1) {
+          of_plane += std::pow(static_cast<double>(plane.disparity[i]) - truth(x), 2);
+          of_rough += std::pow(static_cast<double>(rough.disparity[i]) - truth(x), 2);
+        }
+      }
+      // Half of radius 2 leaves little to fit to.
+      EXPECT_LT(std::sqrt(of_rough / of_plane), radius == 2 ? 0.95 : 0.8) << slope << " " << radius;
+      EXPECT_EQ(rough.deviation, plane.deviation);
+      EXPECT_EQ(rough.support, plane.support);
+      const PartialSurface one_thread = FitRoughSurface(partial, radius, 0.75f, 1);
+      EXPECT_EQ(rough.disparity, one_thread.disparity);
+      EXPECT_EQ(rough.slope_x, one_thread.slope_x);
     }
   }
 }
