@@ -5,18 +5,11 @@
 
 #include <vector>
 
-#include "colmap_seapoint/base/image.h"
 #include "densify/match/rectification.h"
 #include "densify/match/surface_fit.h"
 #include "densify/match/view.h"
 
 namespace colmap_seapoint {
-
-// The picture is lent.
-struct FurtherView {
-  View view;
-  const GrayImage* luma = nullptr;
-};
 
 // `surface` was fitted to `measured`, whose samples change: the disparity becomes the mean of the
 // pair's and of what each agreeing picture measures, weighted by their deviations; the deviation

@@ -4,6 +4,7 @@
 
 #include "densify/match/confidence.h"
 #include "densify/match/consistency.h"
+#include "densify/match/further_views.h"
 #include "densify/match/propagation.h"
 #include "densify/match/refinement.h"
 

@@ -3,7 +3,8 @@
 // and planes are fitted through them (ours). After each step, what contradicts itself is taken out.
 #pragma once
 
-#include "densify/match/further_views.h"
+#include <vector>
+
 #include "densify/match/plan_pair.h"
 #include "densify/match/surface_fit.h"
 

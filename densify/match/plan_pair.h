@@ -9,7 +9,6 @@
 #include "colmap_seapoint/base/picture.h"
 #include "densify/match/cell_grid.h"
 #include "densify/match/densification_mode.h"
-#include "densify/match/further_views.h"
 #include "densify/match/rectification.h"
 #include "densify/match/sample_grid.h"
 #include "densify/match/view.h"

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include "colmap_seapoint/base/camera.h"
+#include "colmap_seapoint/base/image.h"
 #include "colmap_seapoint/base/rigid3.h"
 
 namespace colmap_seapoint {
@@ -12,6 +13,12 @@ struct View {
   int image_idx = -1;  // place in SparseModel::images
   Camera camera;
   Rigid3d cam_from_world;
+};
+
+// One besides a pair's own that may show the same. The picture is lent.
+struct FurtherView {
+  View view;
+  const GrayImage* luma = nullptr;
 };
 
 // A pixel of picture 1 and the pixel of picture 2 that shows the same place.
