@@ -3,11 +3,8 @@
 // and planes are fitted through them (ours). After each step, what contradicts itself is taken out.
 #pragma once
 
-<<<<<<< HEAD
-=======
 #include <vector>
 
->>>>>>> confidence
 #include "densify/match/plan_pair.h"
 #include "densify/match/surface_fit.h"
 
