@@ -58,6 +58,7 @@ void BeginAnew(const fs::path& path, const fs::path& state_folder,
     RunReport ignored;
     const auto registered = RegisterPictures(pictures, reader, &fresh, &ignored);
     CopyFeatures(old, registered, &fresh);
+    fresh.Finish();
   }
   RemoveDatabase(path);
   fs::rename(fresh_path, path);

@@ -15,7 +15,10 @@ constexpr int kAlways = 1 << 30;
 
 CliOptions FailingFrom(const std::string& path_end, int64_t offset = 0, int times = kAlways) {
   CliOptions options;
-  options.failing_read = FailingRead{path_end, offset, times};
+  options.fault.emplace();
+  options.fault->path_end = path_end;
+  options.fault->from_offset = offset;
+  options.fault->max_hits = times;
   return options;
 }
 
@@ -24,7 +27,7 @@ class ReadErrors : public Faults {
   // The command must fail, having met the failure, and say what the system said.
   void ExpectSaid(const Arguments& arguments, const std::string& path_end, int64_t offset = 0) {
     const CliResult result = Run(arguments, FailingFrom(path_end, offset));
-    EXPECT_GT(result.num_failed_reads, 0) << path_end;
+    EXPECT_GT(result.faults.num_hits, 0) << path_end;
     ExpectFailure(result, kSaid);
     EXPECT_NE(result.LastErrorLine().find(path_end), std::string::npos) << result.Text();
   }
@@ -46,7 +49,7 @@ TEST_F(ReadErrors, ListsAndProjectFiles) {
   for (const int64_t offset : {0, 1}) {
     const CliResult result =
         Run(Extract(), FailingFrom("/p.ini", offset), {"--project_path", Path("p.ini")});
-    EXPECT_GT(result.num_failed_reads, 0);
+    EXPECT_GT(result.faults.num_hits, 0);
     ExpectFailure(result, kSaid);
   }
 }
@@ -90,7 +93,7 @@ TEST_F(ReadErrors, APictureIsNeitherEmptyNorDamaged) {
   for (const int64_t offset : {0, 1}) {
     const CliResult result =
         Run(Extract("d" + std::to_string(offset) + ".db"), FailingFrom("/img2.png", offset));
-    EXPECT_GT(result.num_failed_reads, 0);
+    EXPECT_GT(result.faults.num_hits, 0);
     EXPECT_EQ(result.exit_code, 3) << result.Text();
     EXPECT_NE(result.err.find(std::string("img2.png is left out: cannot be read (") + kSaid),
               std::string::npos)
@@ -106,7 +109,7 @@ TEST_F(ReadErrors, AHealthyDatabaseIsNotToBeDeleted) {
   for (const int times : {1, kAlways}) {
     for (int64_t page = 0; page < num_pages; page += 5) {
       const CliResult result = Run(Match(), FailingFrom("/d.db", page * kPage, times));
-      EXPECT_GT(result.num_failed_reads, 0);
+      EXPECT_GT(result.faults.num_hits, 0);
       ExpectFailure(result, "disk");
       EXPECT_EQ(result.err.find("delete"), std::string::npos) << page << ": " << result.Text();
     }
@@ -128,10 +131,10 @@ TEST_F(ReadErrors, TheFocalLengthIsNotLost) {
   const double width = kStripWidth;
   for (int num_reads_before = 0; num_reads_before < 6; ++num_reads_before) {
     CliOptions options = FailingFrom("/img1.jpg", 0, 1);
-    options.failing_read->num_reads_before = num_reads_before;
+    options.fault->num_calls_before = num_reads_before;
     const std::string database = "d" + std::to_string(num_reads_before) + ".db";
     const CliResult result = Run(Extract(database), options);
-    EXPECT_EQ(result.num_failed_reads, 1) << num_reads_before;
+    EXPECT_EQ(result.faults.num_hits, 1) << num_reads_before;
     if (result.exit_code == 3) {
       EXPECT_NE(result.err.find("img1.jpg is left out: cannot be read"), std::string::npos);
       continue;
