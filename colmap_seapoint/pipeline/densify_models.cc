@@ -28,12 +28,16 @@ PartialDensifierOptions DensifierOptions(const AutomaticReconstructorOptions& op
   return densifier;
 }
 
+// What it left out could be read when SeaPoints were found in it: a disk that fails now and then.
+// The next run tries again.
 RunReport DensifyOnce(const PartialDensifierOptions& densifier, const Stage& stage,
                       ColmapDatabase* database, WorkspaceState* state) {
-  return RunStage<RunReport>(state, stage, [&]() -> StageOutput<RunReport> {
+  RunReport result = RunStage<RunReport>(state, stage, [&]() -> StageOutput<RunReport> {
     RunReport report = DensifyModel(densifier, database);
     return {std::move(report), FilesOfOurs(densifier.output_path)};
   });
+  if (!result.left_out.empty()) state->Forget(stage.name);
+  return result;
 }
 
 }  // namespace

@@ -114,6 +114,9 @@ const std::vector<SweptCommand>& Commands() {
 // Of our files in a folder: it names them before they are there, and some that are gone.
 bool IsNameList(const fs::path& path) { return path.filename() == ".colmap_seapoint"; }
 
+// COLMAP is asked more often when it has failed.
+bool IsLog(const fs::path& path) { return path.extension() == ".log"; }
+
 // What holds no times, and is not written bit by bit.
 bool IsSameEachTime(const fs::path& path) {
   const std::string name = path.filename().string();
@@ -121,7 +124,7 @@ bool IsSameEachTime(const fs::path& path) {
   const bool is_report = name.size() >= sizeof(kReport) - 1 &&
                          name.compare(name.size() - (sizeof(kReport) - 1), name.npos, kReport) == 0;
   return !is_report && !IsNameList(path) && name != "pairs.csv" && name != "summary.txt" &&
-         path.extension() != ".log" && path.parent_path().filename() != "state";
+         !IsLog(path) && path.parent_path().filename() != "state";
 }
 
 // What lies there while a run is at work only.
@@ -288,13 +291,13 @@ class Sweep {
                   std::vector<std::string>* findings) const {
     const Files files = WorkFiles();
     for (const auto& [name, content] : files) {
-      if (expected_.count(name) > 0 || (may_leave && IsInUse(name))) continue;
+      if (expected_.count(name) > 0 || IsLog(name) || (may_leave && IsInUse(name))) continue;
       findings->push_back(when + name + " is a stray file");
     }
     for (const auto& [name, content] : expected_) {
       const auto file = files.find(name);
       if (file == files.end()) {
-        findings->push_back(when + name + " is missing");
+        if (!IsLog(name)) findings->push_back(when + name + " is missing");
       } else if (IsSameEachTime(name) && file->second != content) {
         findings->push_back(when + name + " differs");
       }

@@ -117,6 +117,25 @@ TEST_F(ReadErrors, AHealthyDatabaseIsNotToBeDeleted) {
   EXPECT_EQ(Run(Match()).exit_code, 0);
 }
 
+// It fails while the cloud is made, not before: the next run must not take that cloud for finished.
+TEST_F(ReadErrors, ACloudWithoutAPictureIsNotFinished) {
+  CliOptions options = FailingFrom("/img2.png", 0, 0);
+  const CliResult whole = Run(Reconstruct("whole"), options);
+  ASSERT_EQ(whole.exit_code, 0) << whole.Text();
+  const std::string cloud = ReadBytes(Path("whole/dense/0/fused.ply"));
+  options.fault->max_hits = kAlways;
+  int num_failed_late = 0;
+  for (const double share : {0.6, 0.75, 0.9}) {
+    options.fault->num_calls_before = static_cast<int>(share * whole.faults.num_calls);
+    const std::string name = "ws" + std::to_string(options.fault->num_calls_before);
+    num_failed_late += Run(Reconstruct(name), options).exit_code != 0;
+    const CliResult again = Run(Reconstruct(name));
+    EXPECT_EQ(again.exit_code, 0) << again.Text();
+    EXPECT_TRUE(ReadBytes(Path(name + "/dense/0/fused.ply")) == cloud) << share;
+  }
+  EXPECT_GT(num_failed_late, 0);
+}
+
 // Where the disk fails once, when the EXIF is read, the lens must not be another one afterwards.
 TEST_F(ReadErrors, TheFocalLengthIsNotLost) {
   const std::string path = Path("images/img1.jpg");
