@@ -364,8 +364,9 @@ FaultSweepFigures SweepFaults(const std::string& command, int stride, unsigned s
     const int num_calls = sweep.CountCalls(kind);
     figures.num_calls += num_calls;
     const size_t num_complaints = figures.complaints.size();
-    for (int call = static_cast<int>(random() % static_cast<unsigned>(stride)); call < num_calls;
-         call += stride) {
+    const auto first = static_cast<int>(
+        random() % static_cast<unsigned>(std::max(1, std::min(stride, num_calls))));
+    for (int call = first; call < num_calls; call += stride) {
       sweep.Try(kind, call, &figures);
     }
     if (log == nullptr) continue;

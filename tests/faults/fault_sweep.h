@@ -22,7 +22,8 @@ struct FaultSweepFigures {
 // What is swept, by name of the command.
 const std::vector<std::string>& SweptCommands();
 
-// Every `stride`-th call, from the one on that `seed` chooses, of every kind of fault. Throws
+// Every `stride`-th call, from the one on that `seed` chooses, of every kind of fault; of each kind
+// one at least. Throws
 // std::runtime_error when the command does not even run without a fault. A line for each kind goes
 // to `log` (may be null). Cost: two runs of the command on three small pictures, a fault.
 FaultSweepFigures SweepFaults(const std::string& command, int stride, unsigned seed,
