@@ -130,8 +130,8 @@ bool IsSameEachTime(const fs::path& path) {
 // What lies there while a run is at work only.
 bool IsInUse(const fs::path& path) {
   const std::string extension = path.extension().string();
-  return IsLeftover(path) || extension == ".lock" || extension == ".db-wal" ||
-         extension == ".db-shm";
+  const bool is_temporary = path.filename().string().rfind(".seapoint_", 0) == 0;
+  return is_temporary || extension == ".lock" || extension == ".db-wal" || extension == ".db-shm";
 }
 
 // One command on three pictures, again and again.

@@ -18,6 +18,7 @@ inline void ReadAnyModel(const std::filesystem::path& folder,
   }
   Accepts([&] { ReadFrames(folder, model); });
   const std::filesystem::path again = FuzzFolder() / "again";
+  std::filesystem::create_directories(again);
   Accepts([&] { TransformRigFiles(folder, again, Similarity3d()); });
   if (!is_model) return;
   // What we read we write, and read again.
