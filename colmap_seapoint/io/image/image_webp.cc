@@ -50,8 +50,8 @@ ImageHeader CheckHeader(const ImageSource& source) {
 
 ImageHeader ReadWebpHeader(const ImageSource& source) { return CheckHeader(source); }
 
-// By libwebp itself: what OpenCV takes for no WebP it hands on to libraries of other formats (DICOM,
-// GDAL), which print, and some of whose formats name other files.
+// By libwebp itself: what OpenCV takes for no WebP it hands on to libraries of other formats
+// (DICOM, GDAL), which print, and some of whose formats name other files.
 Image<uint8_t> DecodeWebp(const ImageSource& source) {
   const ImageHeader header = CheckHeader(source);
   const MemoryShare share(BytesToDecode(source, header));
