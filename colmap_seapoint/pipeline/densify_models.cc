@@ -1,7 +1,5 @@
 #include "colmap_seapoint/pipeline/densify_models.h"
 
-#include <filesystem>
-
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/run_report_json.h"
@@ -10,8 +8,6 @@
 
 namespace colmap_seapoint {
 namespace {
-
-namespace fs = std::filesystem;
 
 PartialDensifierOptions DensifierOptions(const AutomaticReconstructorOptions& options,
                                          const Workspace& workspace, const ModelSummary& model) {
