@@ -27,25 +27,10 @@ build_release() {
   cmake --build --preset release
 }
 
-run_sanitized() {  # ROOM...
-  local tests=("${@/%/_test}")
-  cmake --preset asan >/dev/null
-  cmake --build --preset asan --target "${tests[@]}"
-  # Whole surveys, whole pairs and golden hashes are for the plain build: here they would take minutes.
-  export GTEST_FILTER='-*VersionTest.*:DensifySequenceTest.*:StereoSequenceTest.*:DensifyPairTest.*:TriangulateMatchesTest.*'
-  # Each program in as many parts as there are cores, so that the longest does not run alone.
-  local shards cores
-  cores=$(nproc)
-  for shards in $(seq 0 $((cores - 1))); do printf "$shards %s\n" "${tests[@]}"; done |
-    GTEST_TOTAL_SHARDS=$cores xargs -P "$cores" -L 1 bash -c '
-      export GTEST_SHARD_INDEX=$0
-      build/asan/bin/"$1" --gtest_brief=1 || { echo "$1 failed under the sanitizers" >&2; exit 1; }'
-}
-
 scripts/setup.sh --gate
 part "formatting" check_format
 part "build, warnings are errors" build_release
 part "tests" ctest --preset release --parallel "$(nproc)" "$@"
 part "clang-tidy" scripts/check_tidy.sh
-part "core under ASan and UBSan" run_sanitized base system io feature densify mapping
+part "core under ASan and UBSan" scripts/check_sanitized.sh asan
 echo "== all passed: $SECONDS s" >&2

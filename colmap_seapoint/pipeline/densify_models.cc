@@ -1,7 +1,5 @@
 #include "colmap_seapoint/pipeline/densify_models.h"
 
-#include <filesystem>
-
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/run_report_json.h"
@@ -10,8 +8,6 @@
 
 namespace colmap_seapoint {
 namespace {
-
-namespace fs = std::filesystem;
 
 PartialDensifierOptions DensifierOptions(const AutomaticReconstructorOptions& options,
                                          const Workspace& workspace, const ModelSummary& model) {
@@ -28,12 +24,16 @@ PartialDensifierOptions DensifierOptions(const AutomaticReconstructorOptions& op
   return densifier;
 }
 
+// What it left out could be read when SeaPoints were found in it: a disk that fails now and then.
+// The next run tries again.
 RunReport DensifyOnce(const PartialDensifierOptions& densifier, const Stage& stage,
                       ColmapDatabase* database, WorkspaceState* state) {
-  return RunStage<RunReport>(state, stage, [&]() -> StageOutput<RunReport> {
+  RunReport result = RunStage<RunReport>(state, stage, [&]() -> StageOutput<RunReport> {
     RunReport report = DensifyModel(densifier, database);
     return {std::move(report), FilesOfOurs(densifier.output_path)};
   });
+  if (!result.left_out.empty()) state->Forget(stage.name);
+  return result;
 }
 
 }  // namespace

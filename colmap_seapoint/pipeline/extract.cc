@@ -249,6 +249,7 @@ RunReport ExtractPictures(const FeatureExtractorOptions& options, const PictureS
     const auto registered = RegisterPictures(pictures.readable, options.reader, database, &report);
     ExtractAll(Extractor(options, second_chance_names),
                EffectiveNumThreads(options.run.num_threads), registered, database, &report);
+    database->Finish();
   }
   Finish(options, report);
   return report;

@@ -31,6 +31,7 @@ RunReport Match(const std::string& command, const Options& options, const MatchI
     const auto images = ImagesWithSeaPoints(options.database_path, *database, &report);
     match_images(images, &report);
     WarnOfLonelyImages(*database, images);
+    database->Finish();
   }
   WriteRunReport(report_path, report);
   return report;

@@ -52,12 +52,14 @@ void BeginAnew(const fs::path& path, const fs::path& state_folder,
   const fs::path fresh_path = state_folder / "fresh.db";
   RemoveDatabase(fresh_path);
   {
-    const ColmapDatabase old(path, ColmapDatabase::Mode::kReadWrite);  // plays its journal in
+    // Plays its journal in; a run that was stopped early has left it empty.
+    const ColmapDatabase old(path, ColmapDatabase::Mode::kCreateIfMissing);
     ColmapDatabase fresh(fresh_path, ColmapDatabase::Mode::kCreateIfMissing);
     // The extraction reports what is left out here.
     RunReport ignored;
     const auto registered = RegisterPictures(pictures, reader, &fresh, &ignored);
     CopyFeatures(old, registered, &fresh);
+    fresh.Finish();
   }
   RemoveDatabase(path);
   fs::rename(fresh_path, path);

@@ -99,5 +99,6 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libcolmap-seapoint-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
   "libeigen3-dev, libopencv-dev (>= 4.5), libceres-dev (>= 2.0), libhwy-dev (>= 1.0.3), pkg-config, \
-libsqlite3-dev, libproj-dev, libxxhash-dev, libjpeg-dev, libpng-dev, libtiff-dev, libexiv2-dev")
+libsqlite3-dev, libproj-dev, libxxhash-dev, libjpeg-dev, libpng-dev, libtiff-dev, libwebp-dev, \
+libexiv2-dev")
 include(CPack)

@@ -35,7 +35,7 @@ void Limit(int resource, long value) {
 
 [[noreturn]] void Execute(const std::string& program, const std::vector<std::string>& arguments,
                           const CliOptions& options, const fs::path& out, const fs::path& err,
-                          ReadFailer* failer) {
+                          FaultInjector* injector) {
   RedirectTo(options.out_path.empty() ? out : fs::path(options.out_path), STDOUT_FILENO);
   RedirectTo(err, STDERR_FILENO);
   for (const auto& [name, value] : options.environment) setenv(name.c_str(), value.c_str(), 1);
@@ -47,7 +47,7 @@ void Limit(int resource, long value) {
   for (const std::string& argument : arguments)
     texts.push_back(const_cast<char*>(argument.c_str()));
   texts.push_back(nullptr);
-  if (failer != nullptr) failer->StartInChild();
+  if (injector != nullptr) injector->StartInChild();
   for (const int descriptor : options.closed_descriptors) close(descriptor);
   execv(program.c_str(), texts.data());
   _exit(126);
@@ -75,14 +75,14 @@ CliResult RunProgram(const std::string& program, const std::vector<std::string>&
                      const CliOptions& options) {
   const TemporaryFolder folder;
   const auto start = Clock::now();
-  std::optional<ReadFailer> failer;
-  if (options.failing_read) failer.emplace(*options.failing_read);
+  std::optional<FaultInjector> injector;
+  if (options.fault) injector.emplace(*options.fault);
   const pid_t child = fork();
   if (child == 0) {
     Execute(program, arguments, options, folder / "out", folder / "err",
-            failer ? &*failer : nullptr);
+            injector ? &*injector : nullptr);
   }
-  if (failer) failer->Watch(child);
+  if (injector) injector->Watch(child);
   CliResult result;
   bool is_killed = false;
   int status = 0;
@@ -97,7 +97,7 @@ CliResult RunProgram(const std::string& program, const std::vector<std::string>&
     }
     std::this_thread::sleep_for(kPoll);
   }
-  if (failer) result.num_failed_reads = failer->NumFailed();
+  if (injector) result.faults = injector->Finish();
   result.peak_rss_bytes = 1024 * static_cast<uint64_t>(usage.ru_maxrss);
   if (WIFEXITED(status)) result.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) result.signal_number = WTERMSIG(status);

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/cli/failing_read.h"
+#include "tests/faults/fault_injector.h"
 
 namespace colmap_seapoint {
 
@@ -28,7 +28,7 @@ struct CliOptions {
   // since the start.
   std::function<bool(double)> kill_when;
   int kill_signal = 9;
-  std::optional<FailingRead> failing_read;
+  std::optional<Fault> fault;
 };
 
 struct CliResult {
@@ -36,7 +36,7 @@ struct CliResult {
   int signal_number = 0;
   bool timed_out = false;
   uint64_t peak_rss_bytes = 0;
-  int num_failed_reads = 0;  // of failing_read
+  FaultCounts faults;  // of `fault`
   std::string out, err;
 
   std::string LastErrorLine() const;

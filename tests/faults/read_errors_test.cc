@@ -15,7 +15,10 @@ constexpr int kAlways = 1 << 30;
 
 CliOptions FailingFrom(const std::string& path_end, int64_t offset = 0, int times = kAlways) {
   CliOptions options;
-  options.failing_read = FailingRead{path_end, offset, times};
+  options.fault.emplace();
+  options.fault->path_end = path_end;
+  options.fault->from_offset = offset;
+  options.fault->max_hits = times;
   return options;
 }
 
@@ -24,7 +27,7 @@ class ReadErrors : public Faults {
   // The command must fail, having met the failure, and say what the system said.
   void ExpectSaid(const Arguments& arguments, const std::string& path_end, int64_t offset = 0) {
     const CliResult result = Run(arguments, FailingFrom(path_end, offset));
-    EXPECT_GT(result.num_failed_reads, 0) << path_end;
+    EXPECT_GT(result.faults.num_hits, 0) << path_end;
     ExpectFailure(result, kSaid);
     EXPECT_NE(result.LastErrorLine().find(path_end), std::string::npos) << result.Text();
   }
@@ -46,7 +49,7 @@ TEST_F(ReadErrors, ListsAndProjectFiles) {
   for (const int64_t offset : {0, 1}) {
     const CliResult result =
         Run(Extract(), FailingFrom("/p.ini", offset), {"--project_path", Path("p.ini")});
-    EXPECT_GT(result.num_failed_reads, 0);
+    EXPECT_GT(result.faults.num_hits, 0);
     ExpectFailure(result, kSaid);
   }
 }
@@ -90,7 +93,7 @@ TEST_F(ReadErrors, APictureIsNeitherEmptyNorDamaged) {
   for (const int64_t offset : {0, 1}) {
     const CliResult result =
         Run(Extract("d" + std::to_string(offset) + ".db"), FailingFrom("/img2.png", offset));
-    EXPECT_GT(result.num_failed_reads, 0);
+    EXPECT_GT(result.faults.num_hits, 0);
     EXPECT_EQ(result.exit_code, 3) << result.Text();
     EXPECT_NE(result.err.find(std::string("img2.png is left out: cannot be read (") + kSaid),
               std::string::npos)
@@ -106,12 +109,31 @@ TEST_F(ReadErrors, AHealthyDatabaseIsNotToBeDeleted) {
   for (const int times : {1, kAlways}) {
     for (int64_t page = 0; page < num_pages; page += 5) {
       const CliResult result = Run(Match(), FailingFrom("/d.db", page * kPage, times));
-      EXPECT_GT(result.num_failed_reads, 0);
+      EXPECT_GT(result.faults.num_hits, 0);
       ExpectFailure(result, "disk");
       EXPECT_EQ(result.err.find("delete"), std::string::npos) << page << ": " << result.Text();
     }
   }
   EXPECT_EQ(Run(Match()).exit_code, 0);
+}
+
+// It fails while the cloud is made, not before: the next run must not take that cloud for finished.
+TEST_F(ReadErrors, ACloudWithoutAPictureIsNotFinished) {
+  CliOptions options = FailingFrom("/img2.png", 0, 0);
+  const CliResult whole = Run(Reconstruct("whole"), options);
+  ASSERT_EQ(whole.exit_code, 0) << whole.Text();
+  const std::string cloud = ReadBytes(Path("whole/dense/0/fused.ply"));
+  options.fault->max_hits = kAlways;
+  int num_failed_late = 0;
+  for (const double share : {0.6, 0.75, 0.9}) {
+    options.fault->num_calls_before = static_cast<int>(share * whole.faults.num_calls);
+    const std::string name = "ws" + std::to_string(options.fault->num_calls_before);
+    num_failed_late += Run(Reconstruct(name), options).exit_code != 0;
+    const CliResult again = Run(Reconstruct(name));
+    EXPECT_EQ(again.exit_code, 0) << again.Text();
+    EXPECT_TRUE(ReadBytes(Path(name + "/dense/0/fused.ply")) == cloud) << share;
+  }
+  EXPECT_GT(num_failed_late, 0);
 }
 
 // Where the disk fails once, when the EXIF is read, the lens must not be another one afterwards.
@@ -128,10 +150,10 @@ TEST_F(ReadErrors, TheFocalLengthIsNotLost) {
   const double width = kStripWidth;
   for (int num_reads_before = 0; num_reads_before < 6; ++num_reads_before) {
     CliOptions options = FailingFrom("/img1.jpg", 0, 1);
-    options.failing_read->num_reads_before = num_reads_before;
+    options.fault->num_calls_before = num_reads_before;
     const std::string database = "d" + std::to_string(num_reads_before) + ".db";
     const CliResult result = Run(Extract(database), options);
-    EXPECT_EQ(result.num_failed_reads, 1) << num_reads_before;
+    EXPECT_EQ(result.faults.num_hits, 1) << num_reads_before;
     if (result.exit_code == 3) {
       EXPECT_NE(result.err.find("img1.jpg is left out: cannot be read"), std::string::npos);
       continue;

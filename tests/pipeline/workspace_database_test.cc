@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <set>
 
 #include "colmap_seapoint/io/colmap/database_features.h"
@@ -62,6 +63,18 @@ TEST_F(WorkspaceDatabase, IsKeptAsLongAsTheStageIsTheSame) {
   const std::string log = LogOf([&] { EXPECT_EQ(ReadImages(Open("a")).size(), 3u); });
   EXPECT_EQ(log.find("begun anew"), std::string::npos) << log;
   EXPECT_EQ(Tables(), before);
+}
+
+// A run that was stopped before it wrote anything is no reason to refuse the next one.
+TEST_F(WorkspaceDatabase, OneThatIsEmptyIsBegunAnew) {
+  OpenAndFill("a");
+  const auto whole = Tables();
+  for (const char* suffix : {"-wal", "-shm", ""}) fs::remove(Path().string() + suffix);
+  fs::create_directories(Root());
+  std::ofstream(Path()).flush();
+  ASSERT_EQ(fs::file_size(Path()), 0u);
+  OpenAndFill("b");
+  EXPECT_EQ(Tables(), whole);
 }
 
 TEST_F(WorkspaceDatabase, AnotherStageBeginsItAnewWithTheSeaPoints) {

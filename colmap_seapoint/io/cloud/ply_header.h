@@ -1,4 +1,4 @@
-// The header of a PLY file. For ply_reader.cc and cloud_ranges.cc only.
+// The header of a PLY file, and what its positions may be. For this room only.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,11 @@
 namespace colmap_seapoint {
 
 enum class PlyType { kInt8, kUInt8, kInt16, kUInt16, kInt32, kUInt32, kFloat32, kFloat64 };
+
+// No position may lie farther out. Beyond it a double has no digits left behind the point, and a
+// cell's number does not fit into 64 bits: such values are no places, but what was left of a
+// damaged or unset one.
+inline constexpr double kMaxCoordinate = 1e15;
 
 size_t PlyTypeBytes(PlyType type);
 

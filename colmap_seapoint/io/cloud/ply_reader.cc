@@ -16,9 +16,6 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr size_t kReadBytes = 1 << 20;
-// Beyond it a double has no digits left behind the point, and a cell's number does not fit into 64
-// bits: such values are no places, but what was left of a damaged or unset one.
-constexpr double kMaxCoordinate = 1e15;
 constexpr const char* kRemedy = "restore a copy, or save the cloud again";
 
 // Which property of the vertices is which value of a CloudVertex; -1 when it is not there.

@@ -124,11 +124,11 @@ class Job {
     }
   }
 
-  // A float ends at 3.4e38.
+  // What is written can be read again.
   Eigen::Vector3d Moved(const Eigen::Vector3d& xyz) const {
     const Eigen::Vector3d moved = similarity_ * xyz;
-    if (!(moved.array().abs() > 1e30).any()) return moved;
-    throw Error(path_, "a point lies farther than 1e30 from the origin",
+    if ((moved.array().abs() <= kMaxCoordinate).all()) return moved;
+    throw Error(path_, "a point lies farther than 1e15 from the origin, or is not finite",
                 "remove such points, e.g. in CloudCompare or MeshLab");
   }
 

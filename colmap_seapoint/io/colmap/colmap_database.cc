@@ -137,6 +137,10 @@ void ColmapDatabase::CheckWhole() const {
               "restore a copy, or delete it and run again");
 }
 
+void ColmapDatabase::Finish() {
+  SqlStatement(*connection_, "PRAGMA wal_checkpoint(PASSIVE)").Run();
+}
+
 DatabaseTransaction::DatabaseTransaction(ColmapDatabase* database)
     : connection_(database->Connection()) {
   RunSql(connection_, "BEGIN IMMEDIATE");

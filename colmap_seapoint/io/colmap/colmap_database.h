@@ -33,6 +33,12 @@ class ColmapDatabase {
   // SQLite's quick_check. Throws Error with its first finding.
   void CheckWhole() const;
 
+  // The last call of who has written: puts what still stands in SQLite's side file (-wal) into the
+  // database itself, so that the one file can be copied or renamed. Closing tries that too, but
+  // cannot say that it failed. Throws Error; what was written is kept in the side file then. While
+  // another program is reading, part of it stays there, which is no error.
+  void Finish();
+
   // For database_*.cc only.
   const SqlConnection& Connection() const { return *connection_; }
   const SchemaExtras& Extras() const { return extras_; }

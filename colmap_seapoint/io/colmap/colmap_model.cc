@@ -129,7 +129,8 @@ void AddImage(const RecordPlace& place, const Eigen::Vector4d& qvec, PosedImage*
     place.Fail(who + " is named '" + image.name +
                "', which is empty, absolute or leads out of the image folder");
   }
-  if (!qvec.allFinite() || !image.cam_from_world.translation.allFinite() || qvec.norm() < 1e-6) {
+  if (!std::isfinite(qvec.norm()) || !image.cam_from_world.translation.allFinite() ||
+      qvec.norm() < 1e-6) {
     place.Fail(who + " has a pose that is not finite or no rotation");
   }
   image.cam_from_world.rotation =

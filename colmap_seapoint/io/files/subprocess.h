@@ -22,9 +22,9 @@ struct SubprocessResult {
 
 // Runs `program` with `arguments` until it ends; stdin is empty, the environment is ours with
 // QT_QPA_PLATFORM=offscreen. stdout and stderr together go to `log_path` (a new file in place of
-// what has that name; empty = nowhere) and line by line, without the newline, to `on_line`; both are
-// bounded, however much the program prints (child_output.h). When it prints nothing for minutes, a
-// log line says so.
+// what has that name; empty = nowhere) and line by line, without the newline, to `on_line`; both
+// are bounded, however much the program prints (child_output.h). When it prints nothing for
+// minutes, a log line says so.
 //
 // The program and whatever it starts form a process group of their own, which a guard process
 // kills as soon as we die, even by kill -9. Call it from a thread that lives until we end.

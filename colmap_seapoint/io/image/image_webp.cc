@@ -1,8 +1,4 @@
-#include <cstring>
-#include <new>
-#include <opencv2/core/utils/logger.hpp>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
+#include <webp/decode.h>
 
 #include "colmap_seapoint/io/image/image_codecs.h"
 #include "colmap_seapoint/io/image/image_limits.h"
@@ -23,7 +19,7 @@ uint64_t LittleEndian(const uint8_t* bytes, int count) {
 // "VP8X" (with transparency, EXIF and so on, before one of the others).
 ImageHeader CheckHeader(const ImageSource& source) {
   uint8_t head[kHeaderBytes];
-  // OpenCV fills up what a truncated file lacks, or prints; so the length is checked before.
+  // Decoders may fill up what a truncated file lacks; so the length is checked before.
   if (std::fread(head, 1, sizeof(head), source.file.get()) != sizeof(head) ||
       source.size - 8 < LittleEndian(head + 4, 4)) {
     ThrowDamagedImage(source.path, "the file ends too early");
@@ -46,7 +42,7 @@ ImageHeader CheckHeader(const ImageSource& source) {
   header.size = CheckImageSize(source.path, width, height);
   header.packing = Packing::kWebp;
   header.unpacked_bytes = width * height;
-  header.bytes_per_pixel += 10;  // libwebp's and OpenCV's copies
+  header.bytes_per_pixel += 6;  // libwebp's own copies
   return header;
 }
 
@@ -54,36 +50,23 @@ ImageHeader CheckHeader(const ImageSource& source) {
 
 ImageHeader ReadWebpHeader(const ImageSource& source) { return CheckHeader(source); }
 
-// By OpenCV, which has libwebp.
+// By libwebp itself: what OpenCV takes for no WebP it hands on to libraries of other formats
+// (DICOM, GDAL), which print, and some of whose formats name other files.
 Image<uint8_t> DecodeWebp(const ImageSource& source) {
-  static const bool is_silent = [] {
-    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-    return true;
-  }();
-  static_cast<void>(is_silent);
   const ImageHeader header = CheckHeader(source);
   const MemoryShare share(BytesToDecode(source, header));
   const std::vector<uint8_t> file = ReadAll(source);
-  cv::Mat decoded;
-  try {
-    // Unchanged: the orientation is ignored too.
-    decoded = cv::imdecode(file, cv::IMREAD_UNCHANGED);
-    if (decoded.empty()) ThrowDamagedImage(source.path, "OpenCV cannot decode it");
-    if (decoded.cols != header.size.width || decoded.rows != header.size.height) {
-      ThrowDamagedImage(source.path, "its header and its pixels are of different sizes");
-    }
-    if (decoded.depth() == CV_16U) decoded.convertTo(decoded, CV_8U, 1.0 / 257.0);
-    if (decoded.depth() != CV_8U)
-      ThrowDamagedImage(source.path, "its pixels are not of 8 or 16 bits");
-    if (decoded.channels() == 3) cv::cvtColor(decoded, decoded, cv::COLOR_BGR2RGB);
-    if (decoded.channels() == 4) cv::cvtColor(decoded, decoded, cv::COLOR_BGRA2RGB);
-  } catch (const cv::Exception& error) {
-    if (error.code == cv::Error::StsNoMem) throw std::bad_alloc();
-    ThrowDamagedImage(source.path, "OpenCV cannot decode it");
+  int width = 0, height = 0;
+  if (WebPGetInfo(file.data(), file.size(), &width, &height) == 0) {
+    ThrowDamagedImage(source.path, "libwebp cannot decode it");
   }
-  Image<uint8_t> image(decoded.cols, decoded.rows, decoded.channels());
-  for (int y = 0; y < image.height; ++y) {
-    std::memcpy(image.Row(y), decoded.ptr(y), image.Stride());
+  if (width != header.size.width || height != header.size.height) {
+    ThrowDamagedImage(source.path, "its header and its pixels are of different sizes");
+  }
+  Image<uint8_t> image(width, height, 3);
+  if (WebPDecodeRGBInto(file.data(), file.size(), image.data.data(), image.data.size(),
+                        static_cast<int>(image.Stride())) == nullptr) {
+    ThrowDamagedImage(source.path, "libwebp cannot decode it");
   }
   return image;
 }

@@ -247,6 +247,8 @@ TEST(ColmapModel, InconsistentModels) {
   expect([](SparseModel* m) { m->images[0].cam_from_world.translation.x() = NAN; }, "not finite");
   expect([](SparseModel* m) { m->images[0].cam_from_world.rotation.coeffs().setZero(); },
          "no rotation");
+  expect([](SparseModel* m) { m->images[0].cam_from_world.rotation.coeffs().setConstant(1e300); },
+         "no rotation");
   expect([](SparseModel* m) { m->images[0].points2D[0].x() = INFINITY; }, "not finite");
   expect([](SparseModel* m) { m->points3D[77].xyz.z() = NAN; }, "point 77 is not finite");
   expect([](SparseModel* m) { m->cameras[3].params[2] = NAN; }, "not finite");

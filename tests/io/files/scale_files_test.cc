@@ -250,6 +250,14 @@ TEST_F(ScaleFiles, BadCloudsAreRefusedAndLeaveNothing) {
                                     "property float z\nend_header\n"),
                               dir_ / "out.ply", SomeSimilarity()),
                "is big-endian");
+  for (const char* position : {"2e15 0 0", "nan 0 0", "0 0 -inf"}) {
+    const std::string cloud =
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nproperty double y\n"
+        "property double z\nend_header\n" +
+        std::string(position) + "\n";
+    EXPECT_ERROR(TransformCloud(Write("far.ply", cloud), dir_ / "out.ply", Similarity3d()),
+                 "a point lies farther than 1e15 from the origin, or is not finite");
+  }
   EXPECT_ERROR(TransformCloud(dir_ / "absent.ply", dir_ / "out.ply", SomeSimilarity()),
                "cannot be read");
   EXPECT_ERROR(TransformCloud(Write("b.ply",

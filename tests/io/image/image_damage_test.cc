@@ -107,6 +107,21 @@ TEST(ImageDamage, HugeSizesAreRefused) {
   EXPECT_ERROR(ReadGrayImage(dir / "large.pgm"), "ends too early");
 }
 
+// It begins as a WebP does, and has at byte 128 what OpenCV knows DICOM by: none of the many
+// formats that OpenCV can hand on is tried.
+TEST(ImageDamage, NoOtherDecoderIsTried) {
+  const TempDir dir;
+  const std::string one = "\1\1\1\1";  // the length, as four bytes, and both sides
+  std::string picture = "RIFF" + one + "WEBPVP8 " + one + "no key" + one;
+  picture.resize(128, ' ');
+  picture += "DICM";
+  picture.resize(0x01010101 + 8, ' ');
+  WriteBytes(dir / "picture.webp", picture);
+  testing::internal::CaptureStderr();
+  EXPECT_ERROR(ReadGrayImage(dir / "picture.webp"), "cannot decode it");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
 TEST(ImageDamage, ManyThreadsStaySilent) {
   const TempDir dir;
   const char* const names[] = {"a.jpg", "b.tif", "c.png"};
