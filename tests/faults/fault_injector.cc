@@ -9,6 +9,7 @@
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -265,6 +266,30 @@ void FaultInjector::Answer(int listener) {
     ioctl(listener, SECCOMP_IOCTL_NOTIF_SEND, &answer);
   }
   close(listener);
+}
+
+bool CanInjectFaults() {
+  static const bool can = [] {
+    FaultInjector injector({});
+    const pid_t child = fork();
+    if (child < 0) return false;
+    if (child == 0) {
+      injector.StartInChild();
+      pause();
+      _exit(0);
+    }
+    bool watches = true;
+    try {
+      injector.Watch(child);
+    } catch (const std::runtime_error&) {
+      watches = false;
+    }
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    injector.Finish();
+    return watches;
+  }();
+  return can;
 }
 
 }  // namespace colmap_seapoint

@@ -76,4 +76,7 @@ class FaultInjector {
   FaultCounts counts_;
 };
 
+// Whether this system lets a test answer its children's calls: some containers do not.
+bool CanInjectFaults();
+
 }  // namespace colmap_seapoint

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "colmap_seapoint/base/version.h"
+#include "tests/faults/fault_injector.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -20,6 +21,7 @@ unsigned SeedOfVersion() {
 class FaultSweep : public testing::TestWithParam<std::string> {};
 
 TEST_P(FaultSweep, APartOfTheCalls) {
+  if (!CanInjectFaults()) GTEST_SKIP() << "this system answers no calls for others";
   const int stride = GetParam() == "automatic_reconstructor" ? 300 : 100;
   const FaultSweepFigures figures = SweepFaults(GetParam(), stride, SeedOfVersion(), nullptr);
   EXPECT_GT(figures.num_faults, 10);
