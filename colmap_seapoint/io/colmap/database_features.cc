@@ -11,7 +11,8 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr int64_t kKeypointCols = 4;
-constexpr int64_t kSiftCols = 128;  // of stubs too
+constexpr int64_t kMaxKeypointCols = 6;  // COLMAP's affine keypoints
+constexpr int64_t kSiftCols = 128;       // of stubs too
 static_assert(sizeof(SeaPoint) == kKeypointCols * sizeof(float), "a keypoint row is a SeaPoint");
 static_assert(sizeof(SiftDescriptor) == kSiftCols, "a descriptor row is a SiftDescriptor");
 
@@ -179,6 +180,26 @@ std::optional<Features> ReadFeatures(const ColmapDatabase& database, uint32_t im
   features.descriptors = RowsOf<Descriptor>(ours[2]);
   features.sift_descriptors = ReadSift(db, image_id, features.points.size());
   return features;
+}
+
+std::vector<Eigen::Vector2f> ReadKeypointPlaces(const ColmapDatabase& database, uint32_t image_id) {
+  const SqlConnection& db = database.Connection();
+  SqlStatement row(db, "SELECT rows, cols, data FROM keypoints WHERE image_id = ?");
+  row.Bind(static_cast<int64_t>(image_id));
+  if (!row.Step()) return {};
+  const int64_t num_rows = row[0].Int(), num_cols = row[1].Int();
+  const std::vector<float> values = RowsOf<float>(row[2]);
+  if (num_rows < 0 || num_cols < 2 || num_cols > kMaxKeypointCols ||
+      static_cast<uint64_t>(num_rows) > values.size() ||
+      values.size() != static_cast<uint64_t>(num_rows * num_cols)) {
+    throw Error(db.path, "the keypoints of image " + std::to_string(image_id) + " are damaged",
+                "restore a copy of the database, or delete it and extract features again");
+  }
+  std::vector<Eigen::Vector2f> places;
+  for (size_t i = 0; i < values.size(); i += static_cast<size_t>(num_cols)) {
+    places.emplace_back(values[i], values[i + 1]);
+  }
+  return places;
 }
 
 }  // namespace colmap_seapoint

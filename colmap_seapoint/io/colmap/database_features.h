@@ -7,9 +7,11 @@
 // use them. Our table also keeps the fingerprint that tells whether a picture or an option changed.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "colmap_seapoint/base/features.h"
 #include "colmap_seapoint/io/colmap/colmap_database.h"
@@ -31,5 +33,9 @@ void WriteFeatures(ColmapDatabase* database, uint32_t image_id, const Features& 
 // nullopt when the image has no SeaPoints of ours, or its keypoints are not the ones that belong
 // to our descriptors (other software replaced them). Damaged descriptors are an Error.
 std::optional<Features> ReadFeatures(const ColmapDatabase& database, uint32_t image_id);
+
+// Where the keypoints of an image lie, pixels, whoever wrote them; empty where there are none.
+// Throws Error where they are damaged.
+std::vector<Eigen::Vector2f> ReadKeypointPlaces(const ColmapDatabase& database, uint32_t image_id);
 
 }  // namespace colmap_seapoint

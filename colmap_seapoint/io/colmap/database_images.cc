@@ -124,6 +124,16 @@ uint32_t AddCamera(ColmapDatabase* database, const Camera& camera) {
   return static_cast<uint32_t>(LastRowId(db));
 }
 
+void SetCalibration(ColmapDatabase* database, const Camera& camera) {
+  SqlStatement(database->Connection(),
+               "UPDATE cameras SET params = ?, prior_focal_length = 1 "
+               "WHERE camera_id = ? AND model = ?")
+      .BindBlob(camera.params.data(), camera.params.size() * sizeof(double))
+      .Bind(static_cast<int64_t>(camera.camera_id))
+      .Bind(static_cast<int64_t>(camera.model))
+      .Run();
+}
+
 uint32_t AddImage(ColmapDatabase* database, const std::string& name, uint32_t camera_id) {
   const SqlConnection& db = database->Connection();
   if (!IsSafeImageName(name)) {

@@ -27,6 +27,10 @@ std::vector<DatabaseImage> ReadImages(const ColmapDatabase& database);
 // Returns the camera_id that the database chose; camera.camera_id is ignored.
 uint32_t AddCamera(ColmapDatabase* database, const Camera& camera);
 
+// Gives the camera of camera.camera_id these parameters, and says that its focal length is known.
+// The model must be the one that the database has.
+void SetCalibration(ColmapDatabase* database, const Camera& camera);
+
 // Returns the image_id. Where the database keeps frames (COLMAP 3.12 and later), the image gets its
 // frame, and a new camera its rig. Throws Error for a name that IsSafeImageName refuses, a name
 // that is there already, and a camera that is not.
