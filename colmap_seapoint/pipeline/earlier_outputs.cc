@@ -1,6 +1,7 @@
 #include "colmap_seapoint/pipeline/earlier_outputs.h"
 
 #include <algorithm>
+#include <boost/algorithm/string/predicate.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -43,10 +44,6 @@ bool IsNumber(const std::string& name) {
   return !name.empty() && name.find_first_not_of("0123456789") == std::string::npos;
 }
 
-bool StartsWith(const std::string& name, const std::string& beginning) {
-  return name.compare(0, beginning.size(), beginning) == 0;
-}
-
 // The stages in state/ whose record is one of ours.
 std::set<std::string> RecordedStages(const fs::path& state) {
   std::set<std::string> stages;
@@ -61,7 +58,7 @@ std::set<std::string> RecordedStages(const fs::path& state) {
 
 bool Any(const std::set<std::string>& stages, const std::string& prefix) {
   const auto first = stages.lower_bound(prefix);
-  return first != stages.end() && StartsWith(*first, prefix);
+  return first != stages.end() && boost::starts_with(*first, prefix);
 }
 
 Names ModelsOf(const fs::path& sparse) {
@@ -79,7 +76,7 @@ Names ModelsOf(const fs::path& sparse) {
 bool IsMapperFolder(const fs::path& folder) {
   const Names entries = EntriesOf(folder);
   return std::all_of(entries.begin(), entries.end(), [](const std::string& name) {
-    return IsNumber(name) || StartsWith(name, "trial_");
+    return IsNumber(name) || boost::starts_with(name, "trial_");
   });
 }
 

@@ -1,6 +1,7 @@
 #include "colmap_seapoint/io/outputs/output_folder.h"
 
 #include <algorithm>
+#include <boost/algorithm/string/predicate.hpp>
 #include <cstdlib>
 #include <system_error>
 
@@ -67,10 +68,6 @@ void WriteNames(const fs::path& folder, const std::set<std::string>& names) {
   WriteTextFile(folder / kNamesFile, text);
 }
 
-bool StartsWith(const std::string& name, const std::string& beginning) {
-  return name.compare(0, beginning.size(), beginning) == 0;
-}
-
 // A link counts, wherever it leads.
 bool Exists(const fs::path& path) {
   std::error_code ignored;
@@ -79,7 +76,7 @@ bool Exists(const fs::path& path) {
 
 // Whether `name` is `other` or lies below it. All lie below the root.
 bool IsAtOrBelow(const std::string& name, const std::string& other) {
-  return other == kRoot || name == other || StartsWith(name, other + "/");
+  return other == kRoot || name == other || boost::starts_with(name, other + "/");
 }
 
 // What stands where a file or folder of ours is to be; "" when nothing does.
@@ -137,7 +134,7 @@ bool OutputFolder::IsOurs(const std::string& name) const {
   const auto first = names_.lower_bound(name);
   if (first != names_.end() && *first == name) return true;
   const auto below = names_.lower_bound(name + "/");
-  return below != names_.end() && StartsWith(*below, name + "/");
+  return below != names_.end() && boost::starts_with(*below, name + "/");
 }
 
 // A name outlives its file no longer than the run: whoever takes it next may be somebody else.
