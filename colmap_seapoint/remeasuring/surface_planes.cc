@@ -17,7 +17,7 @@ constexpr size_t kMinNeighbours = 4;
 constexpr int kNumRounds = 4;
 // A facing surface counts as much as this share of the neighbours: it decides only where these
 // lie on a line.
-constexpr double kFacingWeight = 0.02;
+constexpr double kFacingWeight = 0.01;
 // tan(75 degrees): of the slope that a plane has against one that faces the camera.
 constexpr double kMaxTilt = 3.7;
 
@@ -67,22 +67,38 @@ double MedianResidual(const std::vector<Step>& steps, const Eigen::Vector2d& slo
   return UpperMedian(std::move(residuals));
 }
 
+// `weigh` tells how much a residual counts.
+template <typename Weight>
+Eigen::Vector2d WeightedSlope(const std::vector<Step>& steps, const Weight& weigh) {
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d right = Eigen::Vector2d::Zero();
+  double sum = 0;
+  for (const Step& step : steps) {
+    const double weight = weigh(step);
+    normal += weight * step.direction * step.direction.transpose();
+    right += weight * step.inverse_depth * step.direction;
+    sum += weight * step.direction.squaredNorm();
+  }
+  normal += kFacingWeight * sum * Eigen::Matrix2d::Identity();
+  return normal.inverse() * right;
+}
+
+// From least squares, or from a surface that faces the camera where that is nearer to most: least
+// squares follow what lies off too far.
+Eigen::Vector2d StartSlope(const std::vector<Step>& steps) {
+  const Eigen::Vector2d slope = WeightedSlope(steps, [](const Step&) { return 1.0; });
+  const Eigen::Vector2d facing = Eigen::Vector2d::Zero();
+  return MedianResidual(steps, slope) < MedianResidual(steps, facing) ? slope : facing;
+}
+
 Eigen::Vector2d FitSlope(const std::vector<Step>& steps) {
-  double mean_squared = 0;
-  for (const Step& step : steps) mean_squared += step.direction.squaredNorm();
-  const Eigen::Matrix2d facing = kFacingWeight * mean_squared * Eigen::Matrix2d::Identity();
-  Eigen::Vector2d slope = Eigen::Vector2d::Zero();
+  Eigen::Vector2d slope = StartSlope(steps);
   for (int round = 0; round < kNumRounds; ++round) {
     const double scale = 1.5 * MedianResidual(steps, slope) + 1e-12;
-    Eigen::Matrix2d normal = facing;
-    Eigen::Vector2d right = Eigen::Vector2d::Zero();
-    for (const Step& step : steps) {
+    slope = WeightedSlope(steps, [&](const Step& step) {
       const double residual = (step.inverse_depth - slope.dot(step.direction)) / scale;
-      const double weight = 1 / ((1 + residual * residual) * (1 + residual * residual));
-      normal += weight * step.direction * step.direction.transpose();
-      right += weight * step.inverse_depth * step.direction;
-    }
-    slope = normal.inverse() * right;
+      return 1 / ((1 + residual * residual) * (1 + residual * residual));
+    });
   }
   return slope;
 }

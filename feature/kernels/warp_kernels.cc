@@ -75,7 +75,7 @@ void SampleFrom(const uint8_t* origin, int width, const Placement& placement, in
     const auto down = static_cast<float>(j);
     const VF x_row = hn::Set(df, x + down * placement.x_down);
     const VF y_row = hn::Set(df, y + down * placement.y_down);
-    for (int i = -reach; i <= reach; i += static_cast<int>(hn::Lanes(df))) {
+    for (int i = -reach; i <= reach + 1; i += static_cast<int>(hn::Lanes(df))) {
       const VF across = hn::Iota(df, static_cast<float>(i));
       const VF sample = SampleAt(origin, width, hn::Add(x_row, hn::Mul(across, x_across)),
                                  hn::Add(y_row, hn::Mul(across, y_across)));
