@@ -23,6 +23,9 @@ void Count(MeasurementOutcome outcome, RemeasuringCounts* counts) {
     case MeasurementOutcome::kDiverged:
       ++counts->diverged;
       break;
+    case MeasurementOutcome::kUnsure:
+      ++counts->unsure;
+      break;
     case MeasurementOutcome::kElsewhere:
       ++counts->elsewhere;
       break;

@@ -13,6 +13,7 @@ enum class MeasurementOutcome : uint8_t {
   kMoved,
   kUnlike,  // taken out, as are the next
   kDiverged,
+  kUnsure,
   kElsewhere,
   kTwice,
 };

@@ -132,27 +132,27 @@ class Remeasuring {
     const auto predicted =
         PredictPlace(model_.cameras.at(image.camera_id), image.cam_from_world, patch.surface);
     if (!predicted) return {};
-    const PatchMatch match = MatchPatch(patch.gray, picture, *predicted, options_.matching);
+    const PatchMatch match = MatchPatch(patch.gray, picture, *predicted);
     Measurement measurement;
-    measurement.outcome = OutcomeOf(match);
+    measurement.outcome = OutcomeOf(match.status);
     if (measurement.outcome != MeasurementOutcome::kMoved) return measurement;
-    measurement.pixel =
-        match.place.pixel + match.place.other_from_reference * patch.aside.cast<double>();
+    measurement.pixel = match.pixel + predicted->other_from_reference * patch.aside.cast<double>();
     const double move = (measurement.pixel - image.points2D[observation.point2D_idx]).norm();
     if (!(move <= options_.max_move)) measurement.outcome = MeasurementOutcome::kElsewhere;
     return measurement;
   }
 
-  MeasurementOutcome OutcomeOf(const PatchMatch& match) const {
-    switch (match.status) {
+  static MeasurementOutcome OutcomeOf(PatchMatchStatus status) {
+    switch (status) {
       case PatchMatchStatus::kMatched:
-        return match.sigma <= options_.max_sigma ? MeasurementOutcome::kMoved
-                                                 : MeasurementOutcome::kDiverged;
+        return MeasurementOutcome::kMoved;
       case PatchMatchStatus::kUnlike:
         return MeasurementOutcome::kUnlike;
       case PatchMatchStatus::kDiverged:
-      case PatchMatchStatus::kNoTexture:
         return MeasurementOutcome::kDiverged;
+      case PatchMatchStatus::kNoTexture:
+      case PatchMatchStatus::kUnsure:
+        return MeasurementOutcome::kUnsure;
       case PatchMatchStatus::kOutside:
         break;
     }

@@ -14,16 +14,13 @@
 
 #include "colmap_seapoint/base/image.h"
 #include "colmap_seapoint/base/sparse_model.h"
-#include "feature/remeasuring/patch_matching.h"
 
 namespace colmap_seapoint {
 
 struct RemeasuringOptions {
-  PatchMatchOptions matching;
   // An observation farther from where its point is found shows something else, and is taken out.
-  double max_move = 4;     // pixels
-  double max_sigma = 0.3;  // pixels; what is known worse is taken out
-  int num_threads = -1;    // -1 = all
+  double max_move = 4;   // pixels
+  int num_threads = -1;  // -1 = all
 };
 
 // What became of the observations of triangulated points.
@@ -31,11 +28,13 @@ struct RemeasuringCounts {
   size_t references = 0;  // stay as they are: what the others are measured against
   size_t moved = 0;
   size_t unmeasured = 0;  // stay as they are: at a picture's border, or no picture to read
-  size_t unlike = 0;      // taken out, as are the next four
-  size_t diverged = 0;    // also: known too badly
-  size_t elsewhere = 0;   // farther than max_move
-  size_t twice = 0;       // a second one in the same picture
-  size_t alone = 0;       // the others of their track are out
+  // Taken out: see PatchMatchStatus for the first three.
+  size_t unlike = 0;
+  size_t diverged = 0;
+  size_t unsure = 0;
+  size_t elsewhere = 0;  // farther than max_move
+  size_t twice = 0;      // a second one in the same picture
+  size_t alone = 0;      // the others of their track are out
   size_t removed_points = 0;
 };
 

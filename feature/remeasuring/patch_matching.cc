@@ -2,11 +2,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <vector>
+#include <optional>
 
 namespace colmap_seapoint {
 namespace {
@@ -14,25 +12,23 @@ namespace {
 using warp::Patch;
 
 constexpr int kMaxIterations = 12;
-constexpr double kSmallStep = 0.003;     // pixels: no further step
-constexpr double kMaxDrift = 2;          // pixels from the best whole one
-constexpr double kMaxWarpChange = 0.35;  // of any coefficient
-constexpr double kMinGradient = 1.5;     // rms in the weakest direction, grey values a pixel
+constexpr double kSmallStep = 0.003;  // pixels: no further step
+constexpr double kMaxDrift = 2;       // pixels from the best whole one
+constexpr double kMinGradient = 1.5;  // rms in the weakest direction, grey values a pixel
 constexpr int kNumPixels = (2 * warp::kReach + 1) * (2 * warp::kReach + 1);
+// Correlation by whole pixels is less than at the very place.
+constexpr double kSearchSlack = 0.2;
 
-// Gain and offset, two of the shift, four of the warp.
-constexpr int kMaxParameters = 8;
-using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxParameters, 1>;
-using Matrix =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxParameters, kMaxParameters>;
+// other = gain * patch + offset + gain * gradient . shift
+constexpr int kNumParameters = 4;
+using Vector = Eigen::Matrix<double, kNumParameters, 1>;
+using Matrix = Eigen::Matrix<double, kNumParameters, kNumParameters>;
 
-// other = gain * patch + offset + gain * (gradient . shift) ...: the parameters' columns, each zero
-// where the rows are filled up.
+// The parameters' columns, each zero where the rows are filled up.
 struct Design {
-  std::array<Patch, kMaxParameters> columns;
-  int num = 0;
+  std::array<Patch, kNumParameters> columns;
   Matrix normal;
-  Eigen::LDLT<Matrix> solver;
+  Eigen::LDLT<Matrix> inverse;
 };
 
 double Gray(const ReferencePatch& reference, int i, int j) {
@@ -60,35 +56,22 @@ double MeanOf(const ReferencePatch& reference) {
   return sum / kNumPixels;
 }
 
-Design MakeDesign(const ReferencePatch& reference, PatchWarp kind) {
+Design MakeDesign(const ReferencePatch& reference) {
   Design d;
   const double mean = MeanOf(reference);
-  const auto across = [&](int i, int j) {
-    return 0.5 * (Gray(reference, i + 1, j) - Gray(reference, i - 1, j));
-  };
-  const auto down = [&](int i, int j) {
-    return 0.5 * (Gray(reference, i, j + 1) - Gray(reference, i, j - 1));
-  };
   d.columns[0] = MakePatch([&](int i, int j) { return Gray(reference, i, j) - mean; });
   d.columns[1] = MakePatch([](int, int) { return 1; });
-  d.columns[2] = MakePatch(across);
-  d.columns[3] = MakePatch(down);
-  d.num = 4;
-  if (kind == PatchWarp::kAffine) {
-    d.columns[4] = MakePatch([&](int i, int j) { return i * across(i, j); });
-    d.columns[5] = MakePatch([&](int i, int j) { return i * down(i, j); });
-    d.columns[6] = MakePatch([&](int i, int j) { return j * across(i, j); });
-    d.columns[7] = MakePatch([&](int i, int j) { return j * down(i, j); });
-    d.num = 8;
-  }
-  d.normal.resize(d.num, d.num);
-  for (int a = 0; a < d.num; ++a) {
+  d.columns[2] = MakePatch(
+      [&](int i, int j) { return 0.5 * (Gray(reference, i + 1, j) - Gray(reference, i - 1, j)); });
+  d.columns[3] = MakePatch(
+      [&](int i, int j) { return 0.5 * (Gray(reference, i, j + 1) - Gray(reference, i, j - 1)); });
+  for (int a = 0; a < kNumParameters; ++a) {
     for (int b = 0; b <= a; ++b) {
       d.normal(a, b) = d.normal(b, a) =
           warp::Dot(d.columns[static_cast<size_t>(a)], d.columns[static_cast<size_t>(b)]);
     }
   }
-  d.solver.compute(d.normal);
+  d.inverse.compute(d.normal);
   return d;
 }
 
@@ -97,7 +80,7 @@ bool HasTexture(const Design& design) {
   const double weakest =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(gradients, Eigen::EigenvaluesOnly)
           .eigenvalues()[0];
-  return weakest > kNumPixels * kMinGradient * kMinGradient && design.solver.isPositive();
+  return weakest > kNumPixels * kMinGradient * kMinGradient;
 }
 
 warp::Placement PlacementOf(const PredictedPlace& place) {
@@ -164,10 +147,9 @@ class Search {
 
 // What the patch's parameters are at a place, and how well they explain the grey values.
 struct Fit {
-  double gain = 0;
-  Eigen::Vector2d shift = Eigen::Vector2d::Zero();  // pixels of the reference
-  Eigen::Matrix2d warp = Eigen::Matrix2d::Zero();   // what is to be added to the identity
-  double residual_variance = 0, correlation = 0;
+  double gain;
+  Eigen::Vector2d shift;  // pixels of the reference
+  double residual_variance, correlation;
 };
 
 Fit FitAt(const Design& design, const GrayImage& picture, const PredictedPlace& place) {
@@ -176,36 +158,26 @@ Fit FitAt(const Design& design, const GrayImage& picture, const PredictedPlace& 
   for (int j = 0; j <= 2 * warp::kReach; ++j) {
     other[static_cast<size_t>((j + 1) * warp::Stride(warp::kReach) - 1)] = 0;
   }
-  Vector right(design.num);
-  for (int a = 0; a < design.num; ++a) {
+  Vector right;
+  for (int a = 0; a < kNumParameters; ++a) {
     right[a] = warp::Dot(design.columns[static_cast<size_t>(a)], other);
   }
-  const Vector solution = design.solver.solve(right);
-  Fit fit;
-  fit.gain = solution[0];
-  fit.shift = solution.segment<2>(2) / fit.gain;
-  if (design.num == kMaxParameters) {
-    fit.warp.col(0) = solution.segment<2>(4) / fit.gain;
-    fit.warp.col(1) = solution.segment<2>(6) / fit.gain;
-  }
+  const Vector solution = design.inverse.solve(right);
   const double other_other = warp::Dot(other, other);
   const double other_variance = other_other - right[1] * right[1] / kNumPixels;
-  fit.residual_variance =
-      std::max(0.0, other_other - right.dot(solution)) / (kNumPixels - design.num);
-  fit.correlation = right[0] / std::sqrt(std::max(1e-9, other_variance * design.normal(0, 0)));
-  return fit;
+  const double unexplained = std::max(0.0, other_other - right.dot(solution));
+  return {solution[0], solution.tail<2>() / solution[0],
+          unexplained / (kNumPixels - kNumParameters),
+          right[0] / std::sqrt(std::max(1e-9, other_variance * design.normal(0, 0)))};
 }
 
-// The picture shows at sample s what the patch holds at (1 + warp) s + shift.
-PredictedPlace Moved(const PredictedPlace& place, const Fit& fit) {
-  PredictedPlace moved = place;
-  moved.other_from_reference *= (Eigen::Matrix2d::Identity() + fit.warp).inverse();
-  moved.pixel -= moved.other_from_reference * fit.shift;
-  return moved;
+// The picture shows at sample s what the patch holds at s + shift.
+void Move(const Fit& fit, PredictedPlace* place) {
+  place->pixel -= place->other_from_reference * fit.shift;
 }
 
 double SigmaOf(const Design& design, const Fit& fit, const PredictedPlace& place) {
-  const Matrix inverse = design.solver.solve(Matrix::Identity(design.num, design.num));
+  const Matrix inverse = design.inverse.solve(Matrix::Identity());
   const Eigen::Matrix2d covariance = place.other_from_reference * inverse.block<2, 2>(2, 2) *
                                      place.other_from_reference.transpose() *
                                      fit.residual_variance / (fit.gain * fit.gain);
@@ -215,68 +187,59 @@ double SigmaOf(const Design& design, const Fit& fit, const PredictedPlace& place
   return std::sqrt(std::max(0.0, largest));
 }
 
-bool IsNear(const PredictedPlace& place, const PredictedPlace& start) {
-  const double drift = (place.pixel - start.pixel).norm();
-  const double change =
-      (place.other_from_reference - start.other_from_reference).cwiseAbs().maxCoeff();
-  return drift <= kMaxDrift && change <= kMaxWarpChange;  // false for NaN
+PatchMatchStatus StatusOf(const PatchMatch& match) {
+  if (!(match.correlation >= kMinPatchCorrelation)) return PatchMatchStatus::kUnlike;
+  return match.sigma <= kMaxPatchSigma ? PatchMatchStatus::kMatched : PatchMatchStatus::kUnsure;
 }
 
-PatchMatch Refine(const Design& design, const GrayImage& picture, const PredictedPlace& start,
-                  double min_correlation) {
+PatchMatch Refine(const Design& design, const GrayImage& picture, const PredictedPlace& start) {
   PatchMatch match;
-  match.place = start;
+  PredictedPlace place = start;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    if (!IsNear(match.place, start)) break;
-    if (!warp::IsInside(picture, PlacementOf(match.place), warp::kReach)) {
+    if (!((place.pixel - start.pixel).norm() <= kMaxDrift)) break;
+    if (!warp::IsInside(picture, PlacementOf(place), warp::kReach)) {
       match.status = PatchMatchStatus::kOutside;
       return match;
     }
-    const Fit fit = FitAt(design, picture, match.place);
+    const Fit fit = FitAt(design, picture, place);
     if (!(fit.gain > 0)) break;
-    if (fit.shift.norm() > kSmallStep) {
-      match.place = Moved(match.place, fit);
-      continue;
-    }
+    Move(fit, &place);
+    if (!(fit.shift.norm() <= kSmallStep)) continue;
+    match.pixel = place.pixel;
     match.correlation = fit.correlation;
-    match.sigma = SigmaOf(design, fit, match.place);
-    match.place = Moved(match.place, fit);
-    match.status =
-        fit.correlation >= min_correlation ? PatchMatchStatus::kMatched : PatchMatchStatus::kUnlike;
+    match.sigma = SigmaOf(design, fit, place);
+    match.status = StatusOf(match);
     return match;
   }
   match.status = PatchMatchStatus::kDiverged;
   return match;
 }
 
-// Correlation by whole pixels is less than at the very place.
-constexpr double kSearchSlack = 0.2;
-
 }  // namespace
 
 PatchMatch MatchPatch(const ReferencePatch& reference, const GrayImage& picture,
-                      const PredictedPlace& predicted, const PatchMatchOptions& options) {
+                      const PredictedPlace& predicted) {
   PatchMatch match;
   if (!warp::IsInside(picture, PlacementOf(predicted), warp::kWideReach)) {
     match.status = PatchMatchStatus::kOutside;
     return match;
   }
-  const Design design = MakeDesign(reference, options.warp);
+  const Design design = MakeDesign(reference);
   if (!HasTexture(design)) {
     match.status = PatchMatchStatus::kNoTexture;
     return match;
   }
   const Search search(design.columns[0], picture, predicted);
-  const double min_correlation = options.min_correlation - kSearchSlack;
-  const auto shift = search.Best(min_correlation);
+  constexpr double kMinCorrelation = kMinPatchCorrelation - kSearchSlack;
+  const auto shift = search.Best(kMinCorrelation);
   if (!shift) {
-    match.status = search.BestCorrelation() >= min_correlation ? PatchMatchStatus::kDiverged
+    match.status = search.BestCorrelation() >= kMinCorrelation ? PatchMatchStatus::kDiverged
                                                                : PatchMatchStatus::kUnlike;
     return match;
   }
   PredictedPlace start = predicted;
   start.pixel += start.other_from_reference * *shift;
-  return Refine(design, picture, start, options.min_correlation);
+  return Refine(design, picture, start);
 }
 
 }  // namespace colmap_seapoint

@@ -88,10 +88,11 @@ TEST(RemeasureObservations, BringsThemToWhereTheyShouldBe) {
   EXPECT_GT(errors.before, 1.2);
   EXPECT_LT(errors.after, 0.05);
   const RemeasuringCounts& c = measured.counts;
-  EXPECT_EQ(c.references + c.moved + c.unmeasured + c.unlike + c.diverged + c.elsewhere + c.twice,
+  EXPECT_EQ(c.references + c.moved + c.unmeasured + c.unlike + c.diverged + c.unsure + c.elsewhere +
+                c.twice,
             NumObservations(before));
   EXPECT_GT(c.moved, 8 * (NumObservations(before) - c.references) / 10);
-  EXPECT_LT(c.unlike + c.diverged + c.elsewhere, c.moved / 50);
+  EXPECT_LT(c.unlike + c.diverged + c.unsure + c.elsewhere, c.moved / 50);
   EXPECT_EQ(c.twice, 0u);
 }
 

@@ -75,29 +75,24 @@ int Adjust(const std::vector<std::string>& arguments) {
 void PrintCounts(const Remeasurement& measured) {
   const RemeasuringCounts& c = measured.counts;
   std::printf(
-      "%zu references, %zu moved, %zu unmeasured; out: %zu unlike, %zu diverged, "
+      "%zu references, %zu moved, %zu unmeasured; out: %zu unlike, %zu diverged, %zu unsure, "
       "%zu elsewhere, %zu twice, %zu alone; %zu points out; %zu pictures unreadable\n",
-      c.references, c.moved, c.unmeasured, c.unlike, c.diverged, c.elsewhere, c.twice, c.alone,
-      c.removed_points, measured.unreadable.size());
+      c.references, c.moved, c.unmeasured, c.unlike, c.diverged, c.unsure, c.elsewhere, c.twice,
+      c.alone, c.removed_points, measured.unreadable.size());
 }
 
 int Measure(const std::vector<std::string>& arguments) {
   std::string image_path, input_path, output_path;
   RemeasuringOptions options;
-  bool is_affine = options.matching.warp == PatchWarp::kAffine;
   po::options_description description("observation_benchmark measure");
   auto add = description.add_options();
   add("help,h", "this text");
   add("image_path", po::value(&image_path)->required(), "folder of the pictures");
   add("input_path", po::value(&input_path)->required(), "COLMAP model");
   add("output_path", po::value(&output_path)->required(), "folder of the measured model");
-  add("affine", Default(&is_affine), "1: the warp is measured as well");
-  add("min_correlation", Default(&options.matching.min_correlation), "0..1");
   add("max_move", Default(&options.max_move), "pixels");
-  add("max_sigma", Default(&options.max_sigma), "pixels");
   add("num_threads", Default(&options.num_threads), "-1 = all");
   if (!ParseOptions(description, arguments)) return 0;
-  options.matching.warp = is_affine ? PatchWarp::kAffine : PatchWarp::kShift;
   const SparseModel model = ReadSparseModel(input_path);
   const Timer timer;
   const Remeasurement measured =

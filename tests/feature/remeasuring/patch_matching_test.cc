@@ -107,9 +107,9 @@ TEST(MatchPatch, FindsShiftsWithoutBias) {
       look.place.pixel += Eigen::Vector2d(fraction, 1 - fraction);
       PredictedPlace predicted;
       predicted.pixel = kReferenceMiddle;
-      const PatchMatch match = MatchPatch(PatchOf(texture), Draw(texture, look), predicted, {});
+      const PatchMatch match = MatchPatch(PatchOf(texture), Draw(texture, look), predicted);
       ASSERT_EQ(match.status, PatchMatchStatus::kMatched) << seed;
-      const Eigen::Vector2d error = match.place.pixel - look.place.pixel;
+      const Eigen::Vector2d error = match.pixel - look.place.pixel;
       mean += error / kNumTextures;
       squared += error.squaredNorm();
       ++num;
@@ -129,28 +129,10 @@ TEST(MatchPatch, FollowsThePredictedWarp) {
       Look look = Straight(0, 1);
       look.place = {kReferenceMiddle + Eigen::Vector2d(0.3, -0.45), warp};
       const PatchMatch match =
-          MatchPatch(PatchOf(texture), Draw(texture, look), {kReferenceMiddle, warp}, {});
+          MatchPatch(PatchOf(texture), Draw(texture, look), {kReferenceMiddle, warp});
       ASSERT_EQ(match.status, PatchMatchStatus::kMatched) << warp << "\n" << seed;
-      EXPECT_LT((match.place.pixel - look.place.pixel).norm(), 0.05) << warp << "\n" << seed;
-      EXPECT_EQ(match.place.other_from_reference, warp);
+      EXPECT_LT((match.pixel - look.place.pixel).norm(), 0.05) << warp << "\n" << seed;
     }
-  }
-}
-
-TEST(MatchPatch, MeasuresTheWarpWhenAsked) {
-  const Eigen::Matrix2d truth = Warp(0.93, 0.08, -0.1, 1.04);
-  PatchMatchOptions options;
-  options.warp = PatchWarp::kAffine;
-  for (unsigned seed = 0; seed < 20; ++seed) {
-    const Texture texture(seed);
-    Look look = Straight(0, 1);
-    look.place = {kReferenceMiddle + Eigen::Vector2d(1.3, -0.7), truth};
-    PredictedPlace predicted;
-    predicted.pixel = kReferenceMiddle;
-    const PatchMatch match = MatchPatch(PatchOf(texture), Draw(texture, look), predicted, options);
-    ASSERT_EQ(match.status, PatchMatchStatus::kMatched) << seed;
-    EXPECT_LT((match.place.pixel - look.place.pixel).norm(), 0.03) << seed;
-    EXPECT_LT((match.place.other_from_reference - truth).norm(), 0.02) << seed;
   }
 }
 
@@ -163,9 +145,9 @@ TEST(MatchPatch, IgnoresGainAndOffset) {
     look.offset = 45;
     PredictedPlace predicted;
     predicted.pixel = kReferenceMiddle;
-    const PatchMatch match = MatchPatch(PatchOf(texture), Draw(texture, look), predicted, {});
+    const PatchMatch match = MatchPatch(PatchOf(texture), Draw(texture, look), predicted);
     ASSERT_EQ(match.status, PatchMatchStatus::kMatched);
-    EXPECT_LT((match.place.pixel - look.place.pixel).norm(), 0.03) << seed;
+    EXPECT_LT((match.pixel - look.place.pixel).norm(), 0.03) << seed;
     EXPECT_GT(match.correlation, 0.995);
   }
 }
@@ -194,9 +176,9 @@ TEST(MatchPatch, IsAsGoodAsTheNoiseAllows) {
     PredictedPlace predicted;
     predicted.pixel = kReferenceMiddle;
     const PatchMatch match =
-        MatchPatch(PatchOf(texture, kNoise, 2 * trial + 2000), Draw(texture, look), predicted, {});
+        MatchPatch(PatchOf(texture, kNoise, 2 * trial + 2000), Draw(texture, look), predicted);
     ASSERT_EQ(match.status, PatchMatchStatus::kMatched);
-    const Eigen::Vector2d error = match.place.pixel - look.place.pixel;
+    const Eigen::Vector2d error = match.pixel - look.place.pixel;
     mean += error / kNumTrials;
     squared += error.squaredNorm();
     told_squared += 2 * match.sigma * match.sigma;  // of the worse axis
@@ -216,9 +198,9 @@ TEST(MatchPatch, ConvergesFromThreePixels) {
     PredictedPlace predicted;
     predicted.pixel = kReferenceMiddle + 3 * Eigen::Vector2d(std::cos(angle), std::sin(angle));
     const PatchMatch match =
-        MatchPatch(PatchOf(texture), Draw(texture, Straight(2, seed)), predicted, {});
+        MatchPatch(PatchOf(texture), Draw(texture, Straight(2, seed)), predicted);
     ASSERT_EQ(match.status, PatchMatchStatus::kMatched) << seed;
-    EXPECT_LT((match.place.pixel - kReferenceMiddle).norm(), 0.08) << seed;
+    EXPECT_LT((match.pixel - kReferenceMiddle).norm(), 0.08) << seed;
   }
 }
 
@@ -228,13 +210,11 @@ TEST(MatchPatch, SaysSoWhenThePatchIsNotThere) {
     const Texture texture(seed), other(seed + 5000);
     PredictedPlace predicted;
     predicted.pixel = kReferenceMiddle;
-    const PatchMatch match =
-        MatchPatch(PatchOf(texture), Draw(other, Straight(0, 1)), predicted, {});
+    const PatchMatch match = MatchPatch(PatchOf(texture), Draw(other, Straight(0, 1)), predicted);
     num_matched += match.status == PatchMatchStatus::kMatched;
     predicted.pixel += Eigen::Vector2d(9, -7);  // the same texture, but plainly elsewhere
-    num_matched +=
-        MatchPatch(PatchOf(texture), Draw(texture, Straight(0, 1)), predicted, {}).status ==
-        PatchMatchStatus::kMatched;
+    num_matched += MatchPatch(PatchOf(texture), Draw(texture, Straight(0, 1)), predicted).status ==
+                   PatchMatchStatus::kMatched;
   }
   EXPECT_LE(num_matched, 4);
 }
@@ -247,12 +227,11 @@ TEST(MatchPatch, NeedsTextureInBothDirections) {
   PredictedPlace predicted;
   predicted.pixel = kReferenceMiddle;
   for (const GrayImage& picture : {flat, edge}) {
-    const PatchMatch match =
-        MatchPatch(*CutPatch(picture, kMiddle, kMiddle), picture, predicted, {});
+    const PatchMatch match = MatchPatch(*CutPatch(picture, kMiddle, kMiddle), picture, predicted);
     EXPECT_EQ(match.status, PatchMatchStatus::kNoTexture);
   }
   // The other picture alone may be flat as well: its patch is not like anything.
-  const PatchMatch match = MatchPatch(PatchOf(Texture(1)), flat, predicted, {});
+  const PatchMatch match = MatchPatch(PatchOf(Texture(1)), flat, predicted);
   EXPECT_EQ(match.status, PatchMatchStatus::kUnlike);
 }
 
@@ -264,17 +243,17 @@ TEST(MatchPatch, TakesAnyPlaceAndPicture) {
   for (const double place : {-1e300, -5.0, 0.0, 12.0, 52.0, 64.0, 1e300, nan}) {
     PredictedPlace predicted;
     predicted.pixel = {place, 32};
-    EXPECT_EQ(MatchPatch(patch, picture, predicted, {}).status, PatchMatchStatus::kOutside);
+    EXPECT_EQ(MatchPatch(patch, picture, predicted).status, PatchMatchStatus::kOutside);
     predicted.pixel = {32, place};
-    EXPECT_EQ(MatchPatch(patch, picture, predicted, {}).status, PatchMatchStatus::kOutside);
+    EXPECT_EQ(MatchPatch(patch, picture, predicted).status, PatchMatchStatus::kOutside);
   }
   for (const double scale : {nan, 1e300, 10.0}) {
     PredictedPlace predicted = {kReferenceMiddle, scale * Eigen::Matrix2d::Identity()};
-    EXPECT_EQ(MatchPatch(patch, picture, predicted, {}).status, PatchMatchStatus::kOutside);
+    EXPECT_EQ(MatchPatch(patch, picture, predicted).status, PatchMatchStatus::kOutside);
   }
   PredictedPlace predicted = {kReferenceMiddle, Eigen::Matrix2d::Zero()};
-  EXPECT_NE(MatchPatch(patch, picture, predicted, {}).status, PatchMatchStatus::kMatched);
-  EXPECT_EQ(MatchPatch(patch, GrayImage(), predicted, {}).status, PatchMatchStatus::kOutside);
+  EXPECT_NE(MatchPatch(patch, picture, predicted).status, PatchMatchStatus::kMatched);
+  EXPECT_EQ(MatchPatch(patch, GrayImage(), predicted).status, PatchMatchStatus::kOutside);
 }
 
 TEST(MatchPatch, GoesToTheLastPixelThatItNeeds) {
@@ -285,9 +264,9 @@ TEST(MatchPatch, GoesToTheLastPixelThatItNeeds) {
     look.place.pixel = {place, place};
     PredictedPlace predicted;
     predicted.pixel = look.place.pixel;
-    const PatchMatch match = MatchPatch(patch, Draw(texture, look), predicted, {});
+    const PatchMatch match = MatchPatch(patch, Draw(texture, look), predicted);
     ASSERT_EQ(match.status, PatchMatchStatus::kMatched) << place;
-    EXPECT_LT((match.place.pixel - look.place.pixel).norm(), 0.03);
+    EXPECT_LT((match.pixel - look.place.pixel).norm(), 0.03);
   }
 }
 
@@ -298,17 +277,13 @@ TEST(MatchPatch, IsTheSameOnEveryVectorUnit) {
     look.place = {kReferenceMiddle + Eigen::Vector2d(1.3, -0.7), Warp(0.9, 0.1, -0.2, 0.8)};
     const GrayImage picture = Draw(texture, look);
     const ReferencePatch patch = PatchOf(texture);
-    PatchMatchOptions options;
-    options.warp = PatchWarp::kAffine;
     std::vector<PatchMatch> matches;
     ForEachVectorTarget([&] {
-      matches.push_back(
-          MatchPatch(patch, picture, {kReferenceMiddle, Warp(0.95, 0.1, -0.2, 0.8)}, options));
+      matches.push_back(MatchPatch(patch, picture, {kReferenceMiddle, Warp(0.95, 0.1, -0.2, 0.8)}));
     });
     EXPECT_EQ(matches[0].status, PatchMatchStatus::kMatched);
     for (const PatchMatch& match : matches) {
-      EXPECT_EQ(match.place.pixel, matches[0].place.pixel);
-      EXPECT_EQ(match.place.other_from_reference, matches[0].place.other_from_reference);
+      EXPECT_EQ(match.pixel, matches[0].pixel);
       EXPECT_EQ(match.sigma, matches[0].sigma);
       EXPECT_EQ(match.correlation, matches[0].correlation);
     }
