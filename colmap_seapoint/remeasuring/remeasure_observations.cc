@@ -20,6 +20,7 @@ struct KeptPatch {
   ReferencePatch gray;
   Eigen::Vector2f aside;  // from the middle of the patch to the point, pixels
 };
+static_assert(sizeof(std::optional<KeptPatch>) <= 400, "one a point of the whole survey");
 
 class Remeasuring {
  public:
