@@ -51,7 +51,7 @@ using GrayPictureReader = std::function<GrayImage(const PosedImage&)>;
 // The model with its observations moved or taken out, and without the points that have fewer than
 // two left; poses, points' places and lenses stay, as does what has no point. The same bytes for
 // any number of threads. Memory: one picture a thread, about 360 bytes a point and 40 an
-// observation. About 15 microseconds an observation, decoding of pictures aside.
+// observation. About 12 microseconds an observation, decoding of pictures aside.
 Remeasurement RemeasureObservations(const RemeasuringOptions& options, const SparseModel& model,
                                     const GrayPictureReader& read);
 

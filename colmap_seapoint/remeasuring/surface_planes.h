@@ -25,7 +25,6 @@ struct SeenPlane {
 // One plane through each of `wanted` (positions in `points`) and as well as possible through its
 // twelve nearest neighbours; what lies off, such as points of another surface, hardly counts.
 // Facing the camera where a point has too few neighbours, or would be seen at less than 15 degrees.
-// About 5 microseconds a plane.
 std::vector<SeenPlane> FitPlanes(const std::vector<SeenPoint>& points,
                                  const std::vector<size_t>& wanted);
 
