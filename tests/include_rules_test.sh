@@ -19,6 +19,7 @@ feature/detector                colmap_seapoint/base feature/kernels
 feature/descriptor              colmap_seapoint/base feature/kernels
 feature/matching                colmap_seapoint/base feature/kernels feature/descriptor
 feature/retrieval               colmap_seapoint/base feature/kernels feature/descriptor
+feature/remeasuring             colmap_seapoint/base feature/kernels
 feature                         colmap_seapoint/base feature/*
 densify/kernels                 colmap_seapoint/base
 densify/match                   colmap_seapoint/base densify/kernels
@@ -33,6 +34,7 @@ colmap_seapoint/tracks          colmap_seapoint/base colmap_seapoint/io/colmap
 colmap_seapoint/mapping         colmap_seapoint/tracks colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/colmap
 colmap_seapoint/pictures        colmap_seapoint/base colmap_seapoint/io/* feature feature/* densify densify/*
 colmap_seapoint/pairing         colmap_seapoint/base colmap_seapoint/io/* feature feature/*
+colmap_seapoint/remeasuring     colmap_seapoint/base feature/remeasuring
 colmap_seapoint/report          colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/georeference densify densify/*
 colmap_seapoint/pipeline        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/georeference colmap_seapoint/mapping colmap_seapoint/pictures colmap_seapoint/pairing colmap_seapoint/report feature feature/* densify densify/*
 colmap_seapoint/cli             colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files colmap_seapoint/pipeline

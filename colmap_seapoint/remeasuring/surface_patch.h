@@ -1,0 +1,30 @@
+// A small piece of the surface as one picture shows it, and where others should show it.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "colmap_seapoint/base/camera.h"
+#include "colmap_seapoint/base/rigid3.h"
+#include "colmap_seapoint/remeasuring/surface_planes.h"
+#include "feature/remeasuring/patch_matching.h"
+
+namespace colmap_seapoint {
+
+// Of the pixel that holds the point in its reference picture. World frame.
+struct SurfacePatch {
+  Eigen::Vector3d middle;
+  Eigen::Vector3f across, down;  // what a pixel across and down is on the surface
+};
+
+// `pixel`: of the reference picture. `plane`: in its camera's frame. nullopt where the plane is not
+// seen all around.
+std::optional<SurfacePatch> PatchOnPlane(const Camera& camera, const Rigid3d& cam_from_world,
+                                         const SeenPlane& plane, const Eigen::Vector2d& pixel);
+
+// The affine warp between the two pictures there: all of projection and lens is in it. nullopt
+// where the patch is not in front of the camera.
+std::optional<PredictedPlace> PredictPlace(const Camera& camera, const Rigid3d& cam_from_world,
+                                           const SurfacePatch& patch);
+
+}  // namespace colmap_seapoint
