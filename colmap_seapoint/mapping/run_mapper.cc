@@ -24,7 +24,6 @@ constexpr int kMaxRounds = 5;
 constexpr size_t kMinPicturesOfModel = 3;
 // The relaxed thresholds of later rounds let models of a handful of chance points pass.
 constexpr size_t kMinPointsOfModel = 50;
-constexpr char kMinModelSize[] = "Mapper.min_model_size";
 constexpr char kRefineDistortion[] = "Mapper.ba_refine_extra_params";
 constexpr char kGlobalRefineDistortion[] = "GlobalMapper.ba_refine_extra_params";
 constexpr char kMapper[] = "mapper";
@@ -92,7 +91,6 @@ class MapperRounds {
       const bool found_model = RunRound(round);
       if (missing_.size() < kMinPicturesOfModel || (!found_model && round > 1)) break;
     }
-    if (num_models_ == 0) TakeSmallModels();
     if (num_models_ == 0) {
       throw Error(job_.database_path.string(), "the mapper found no model (" + end_ + ")",
                   "take pictures that overlap more, or relax --Mapper.abs_pose_min_num_inliers; "
@@ -127,16 +125,6 @@ class MapperRounds {
 
   bool IsDoubtful(const Trial& trial) const {
     return trial.pictures.size() < missing_.size() || !trial.lenses_are_sound;
-  }
-
-  // COLMAP drops models of less than ten pictures, since chance brings some about. Where there is
-  // no other, they are better than none.
-  void TakeSmallModels() {
-    if (!colmap_.HasMapperOption(kMinModelSize)) return;
-    MapperOptions options = job_.later_rounds;
-    options[kMinModelSize] = std::to_string(kMinPicturesOfModel);
-    TakeModels("Mapper, small models",
-               RunTrial(kMapper, "small_models", options, job_.finds_lens, false));
   }
 
   Trial RunTrial(const std::string& command, const std::string& name, const MapperOptions& options,
