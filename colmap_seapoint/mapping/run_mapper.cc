@@ -74,6 +74,31 @@ bool IsBetter(const Trial& a, const Trial& b) {
   return a.worst_error < b.worst_error;
 }
 
+// Those of enough points, the largest first, without those that have fewer than
+// kMinPicturesOfModel pictures which no larger one has: COLMAP begins again until a model grows,
+// and leaves its first attempts beside it.
+std::vector<fs::path> ModelsOfTheirOwn(const std::vector<fs::path>& paths) {
+  std::vector<std::pair<fs::path, std::set<std::string>>> models;
+  for (const fs::path& path : paths) {
+    const SparseModel model = ReadSparseModel(path);
+    if (model.points3D.size() < kMinPointsOfModel) continue;
+    models.push_back({path, {}});
+    for (const PosedImage& image : model.images) models.back().second.insert(image.name);
+  }
+  std::stable_sort(models.begin(), models.end(),
+                   [](const auto& a, const auto& b) { return a.second.size() > b.second.size(); });
+  std::vector<fs::path> chosen;
+  std::set<std::string> known;
+  for (const auto& [path, pictures] : models) {
+    const auto num_new = std::count_if(pictures.begin(), pictures.end(),
+                                       [&](const auto& name) { return known.count(name) == 0; });
+    if (static_cast<size_t>(num_new) < std::min(kMinPicturesOfModel, pictures.size())) continue;
+    known.insert(pictures.begin(), pictures.end());
+    chosen.push_back(path);
+  }
+  return chosen;
+}
+
 // Runs the rounds one after the other; what one has found, the next does not look for again.
 class MapperRounds {
  public:
@@ -107,19 +132,22 @@ class MapperRounds {
   bool RunRound(int round) {
     const std::string name = std::to_string(round);
     const bool is_first = round == 1;
-    const MapperOptions& options = is_first ? job_.first_round : job_.later_rounds;
+    const MapperOptions& usual = is_first ? job_.first_round : job_.later_rounds;
     Trial trial;
     if (is_first && job_.global_round) {
       trial = RunTrial(kGlobalMapper, name + "_global", *job_.global_round, true, false);
     }
-    const auto try_too = [&](const std::string& suffix, bool holds_distortion, bool must_succeed) {
+    const auto try_too = [&](const std::string& suffix, const MapperOptions& options,
+                             bool holds_distortion, bool must_succeed) {
+      if (!IsDoubtful(trial)) return;
       const Trial other = RunTrial(kMapper, name + suffix, options, holds_distortion, must_succeed);
       if (trial.command.empty() || IsBetter(other, trial)) trial = other;
     };
-    if (IsDoubtful(trial)) try_too("", job_.finds_lens, is_first && trial.models.empty());
-    if (is_first && trial.holds_distortion && IsDoubtful(trial)) {
-      try_too("_free_distortion", false, false);
+    if (is_first && job_.initial_pair_round) {
+      try_too("_initial_pair", *job_.initial_pair_round, job_.finds_lens, false);
     }
+    try_too("", usual, job_.finds_lens, is_first && trial.models.empty());
+    if (is_first && trial.holds_distortion) try_too("_free_distortion", usual, false, false);
     return TakeModels("Mapper, round " + name, trial);
   }
 
@@ -149,13 +177,12 @@ class MapperRounds {
     end_ = result.Text() + ", '" + last_line + "'";
     const std::vector<fs::path> models = ListModels(trial.folder);
     if (!CheckResult(result, last_line, !models.empty(), LogOf(name), must_succeed)) return trial;
-    for (const fs::path& model : models) AddModel(model, name, &trial);
+    for (const fs::path& model : ModelsOfTheirOwn(models)) AddModel(model, name, &trial);
     return trial;
   }
 
   void AddModel(const fs::path& path, const std::string& trial_name, Trial* trial) const {
     SparseModel model = ReadSparseModel(path);
-    if (model.points3D.size() < kMinPointsOfModel) return;
     std::string lens;
     if (job_.finds_lens) {
       const std::string log = "lens_" + trial_name + "_" + path.filename().string();

@@ -29,7 +29,7 @@ class Groups {
   }
 
   void Tie(uint32_t id1, uint32_t id2) {
-    const auto [smaller, larger] = std::minmax(Of(id1), Of(id2));
+    const auto [smaller, larger] = std::minmax({Of(id1), Of(id2)});
     parents_[larger] = smaller;
   }
 
