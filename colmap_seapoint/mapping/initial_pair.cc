@@ -69,6 +69,8 @@ class PairAngles {
 
 bool CanBegin(const TwoViewGeometry& geometry) {
   if (geometry.inliers.size() < kMinInliers || !geometry.cam2_from_cam1) return false;
+  // The pose of a plane or of a mere turn is one of several, and COLMAP may find another.
+  if (geometry.config == TwoViewConfig::kPlanarOrPanoramic) return false;
   return std::abs(geometry.cam2_from_cam1->translation.z()) < kMaxForwardMotion;
 }
 

@@ -19,10 +19,10 @@ struct InitialPair {
   double angle_deg = 0;  // median over the inliers, by the pair's own geometry
 };
 
-// Of the pairs of at least 100 verified matches that did not move straight ahead, the one whose
-// pictures see them from the most different directions. nullopt where there is none of more than
-// half a degree, or where one reaches 8 degrees: COLMAP does well then. Cost: a ray an inlier, up
-// to the first pair of 8 degrees. Throws Error when the database cannot be read.
+// Of the pairs of at least 100 verified matches that are neither planar nor moved straight ahead,
+// the one whose pictures see them from the most different directions. nullopt where there is none
+// of more than half a degree, or where one reaches 8 degrees: COLMAP does well then. Cost: a ray an
+// inlier, up to the first pair of 8 degrees. Throws Error when the database cannot be read.
 std::optional<InitialPair> FindInitialPair(const ColmapDatabase& database);
 
 // What a mapper is given to begin with that pair and to end with one model. nullopt when this

@@ -102,6 +102,10 @@ TEST_F(InitialPairTest, PixelsWithoutRaysAndPairsWithoutPosesDoNotCount) {
   without_pose.cam2_from_cam1.reset();
   WriteMatches(&database_, a, b, matches, without_pose);
   EXPECT_FALSE(FindInitialPair(database_));
+  TwoViewGeometry planar = MakeGeometry(matches);
+  planar.config = TwoViewConfig::kPlanarOrPanoramic;
+  WriteMatches(&database_, a, b, matches, planar);
+  EXPECT_FALSE(FindInitialPair(database_));
 }
 
 TEST(OptionsOfInitialPairTest, OneModelFromThatPairUnlessTheUserChose) {
