@@ -5,14 +5,17 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "colmap_seapoint/base/error.h"
 #include "feature/descriptor/rbrief_descriptor.h"
 #include "feature/descriptor/sift_descriptor.h"
+#include "feature/feature_levels.h"
 
 namespace colmap_seapoint {
 
 namespace {
 
-constexpr double kLevelScale = 1.4142135623730951;  // between neighbouring pyramid levels
+constexpr double kLargePixels = 1.5e6;          // of a picture whose own size is too fine ...
+constexpr double kSecondChancePixels = 0.75e6;  // ... and at most so many where levels begin then
 
 // One level of the pyramid (paper 4).
 struct Level {
@@ -34,12 +37,14 @@ std::vector<int> Shares(int count, int num_levels) {
   return shares;
 }
 
-std::vector<Level> PlanLevels(const GrayImage& picture, const SeaPointExtractionOptions& options) {
+// options.num_levels levels, the first of which is the picture reduced `begin` times.
+std::vector<Level> PlanLevels(const GrayImage& picture, const SeaPointExtractionOptions& options,
+                              int begin) {
   const std::vector<int> least = Shares(options.min_num_features, options.num_levels);
   const std::vector<int> most = Shares(options.max_num_features, options.num_levels);
   std::vector<Level> levels;
   for (size_t l = 0; l < least.size(); ++l) {
-    const double scale = std::pow(kLevelScale, static_cast<int>(l));
+    const double scale = std::pow(kLevelScale, begin + static_cast<int>(l));
     Level level;
     level.width = std::max(1, static_cast<int>(std::lround(picture.width / scale)));
     level.height = std::max(1, static_cast<int>(std::lround(picture.height / scale)));
@@ -80,25 +85,28 @@ Features Describe(const GrayImage& picture, std::vector<SeaPoint> points, bool w
 }
 
 // Takes the features of a level over into the picture's coordinates.
-void Append(const Features& found, const Level& level, Features* features) {
-  for (SeaPoint point : found.points) {
+void Append(Features found, const Level& level, Features* features) {
+  for (SeaPoint& point : found.points) {
     point.x = static_cast<float>(point.x * level.scale_x);
     point.y = static_cast<float>(point.y * level.scale_y);
     point.scale = static_cast<float>(std::sqrt(level.scale_x * level.scale_y));
-    features->points.push_back(point);
   }
-  features->descriptors.insert(features->descriptors.end(), found.descriptors.begin(),
-                               found.descriptors.end());
-  features->sift_descriptors.insert(features->sift_descriptors.end(),
-                                    found.sift_descriptors.begin(), found.sift_descriptors.end());
+  AppendFeatures(found, features);
 }
 
-}  // namespace
+// How often the picture is reduced before the first level of a second chance.
+int SecondChanceBegin(const GrayImage& picture) {
+  const double num_pixels = static_cast<double>(picture.width) * picture.height;
+  if (num_pixels <= kLargePixels) return 0;
+  return static_cast<int>(
+      std::ceil(std::log(num_pixels / kSecondChancePixels) / (2 * std::log(kLevelScale))));
+}
 
-ExtractedFeatures ExtractFeatures(const GrayImage& picture, const GrayImage& mask,
-                                  const SeaPointExtractionOptions& options) {
+ExtractedFeatures ExtractLevels(const GrayImage& picture, const GrayImage& mask,
+                                const SeaPointExtractionOptions& options,
+                                const std::vector<Level>& levels) {
   ExtractedFeatures all;
-  for (const Level& level : PlanLevels(picture, options)) {
+  for (const Level& level : levels) {
     const AtLevel level_picture(picture, level), level_mask(mask, level);
     const GrayImage& grey = level_picture.Get();
     const int border = kRBriefBorder * DescriptionReduction(grey);
@@ -109,6 +117,26 @@ ExtractedFeatures ExtractFeatures(const GrayImage& picture, const GrayImage& mas
     all.detection.push_back(detection.summary);
   }
   return all;
+}
+
+}  // namespace
+
+ExtractedFeatures ExtractFeatures(const GrayImage& picture, const GrayImage& mask,
+                                  const SeaPointExtractionOptions& options) {
+  return ExtractLevels(picture, mask, options, PlanLevels(picture, options, 0));
+}
+
+Features ExtractSecondChance(const GrayImage& picture, const GrayImage& mask,
+                             const SeaPointExtractionOptions& options) {
+  SEAPOINT_CHECK(options.num_levels == 1);
+  Features features = ExtractFeatures(picture, mask, options).features;
+  SeaPointExtractionOptions of_levels = options;
+  of_levels.num_levels = kSecondChanceLevels;
+  const int begin = SecondChanceBegin(picture);
+  std::vector<Level> levels = PlanLevels(picture, of_levels, begin);
+  if (begin == 0) levels.erase(levels.begin());  // it is there, with more SeaPoints
+  AppendFeatures(ExtractLevels(picture, mask, options, levels).features, &features);
+  return features;
 }
 
 }  // namespace colmap_seapoint

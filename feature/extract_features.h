@@ -30,4 +30,17 @@ struct ExtractedFeatures {
 ExtractedFeatures ExtractFeatures(const GrayImage& picture, const GrayImage& mask,
                                   const SeaPointExtractionOptions& options);
 
+// Pyramid levels of a second chance.
+inline constexpr int kSecondChanceLevels = 5;
+
+// The SeaPoints of ExtractFeatures, and behind them, as many again and more, SI-SeaPoints of
+// kSecondChanceLevels levels (ours): for a picture that its own SeaPoints do not tie to others. A
+// picture of up to 1.5 megapixels gets the levels that follow its own size. Of a larger one, they
+// begin at 0.75 megapixels, since its finest detail (leaves, grass, ripples) is of the kind that
+// looks alike everywhere and is gone in the next picture: of a drone's 9 megapixels over a shore 29
+// pairs in 153 are verified by SeaPoints of one level, and 68 by what they show at a quarter of the
+// size. Needs options.num_levels of 1.
+Features ExtractSecondChance(const GrayImage& picture, const GrayImage& mask,
+                             const SeaPointExtractionOptions& options);
+
 }  // namespace colmap_seapoint

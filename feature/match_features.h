@@ -14,7 +14,7 @@ namespace colmap_seapoint {
 
 // Raise it whenever the same SeaPoints and options give other matches than before, together with
 // the hashes in tests/feature/matching_version_test.cc.
-inline constexpr char kMatchingVersion[] = "4";
+inline constexpr char kMatchingVersion[] = "5";
 
 struct MatchedPair {
   FeatureMatches matches;  // one-to-one, flow-filtered and guided: COLMAP's `matches`

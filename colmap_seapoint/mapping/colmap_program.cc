@@ -19,6 +19,10 @@ constexpr MapperDefault kEveryRound[] = {
     {"Mapper.num_threads", "1"},
     // COLMAP asks for 30. Hazy water leaves fewer; 20 costs the clear sets nothing (same models).
     {"Mapper.abs_pose_min_num_inliers", "20"},
+    // COLMAP drops all but the first model of less than 10 pictures, and begins again at another
+    // pair: dozens of times where a set falls into parts. What chance brings about has few points,
+    // and is told by them (run_mapper.cc).
+    {"Mapper.min_model_size", "3"},
 };
 
 // The models only have to lead the adjustment of our own (adjust_lens.h) to the right valley: all

@@ -24,7 +24,6 @@ constexpr int kMaxRounds = 5;
 constexpr size_t kMinPicturesOfModel = 3;
 // The relaxed thresholds of later rounds let models of a handful of chance points pass.
 constexpr size_t kMinPointsOfModel = 50;
-constexpr char kMinModelSize[] = "Mapper.min_model_size";
 constexpr char kRefineDistortion[] = "Mapper.ba_refine_extra_params";
 constexpr char kGlobalRefineDistortion[] = "GlobalMapper.ba_refine_extra_params";
 constexpr char kMapper[] = "mapper";
@@ -75,6 +74,31 @@ bool IsBetter(const Trial& a, const Trial& b) {
   return a.worst_error < b.worst_error;
 }
 
+// Those of enough points, the largest first, without those that have fewer than
+// kMinPicturesOfModel pictures which no larger one has: COLMAP begins again until a model grows,
+// and leaves its first attempts beside it.
+std::vector<fs::path> ModelsOfTheirOwn(const std::vector<fs::path>& paths) {
+  std::vector<std::pair<fs::path, std::set<std::string>>> models;
+  for (const fs::path& path : paths) {
+    const SparseModel model = ReadSparseModel(path);
+    if (model.points3D.size() < kMinPointsOfModel) continue;
+    models.push_back({path, {}});
+    for (const PosedImage& image : model.images) models.back().second.insert(image.name);
+  }
+  std::stable_sort(models.begin(), models.end(),
+                   [](const auto& a, const auto& b) { return a.second.size() > b.second.size(); });
+  std::vector<fs::path> chosen;
+  std::set<std::string> known;
+  for (const auto& [path, pictures] : models) {
+    const auto num_new = std::count_if(pictures.begin(), pictures.end(),
+                                       [&](const auto& name) { return known.count(name) == 0; });
+    if (static_cast<size_t>(num_new) < std::min(kMinPicturesOfModel, pictures.size())) continue;
+    known.insert(pictures.begin(), pictures.end());
+    chosen.push_back(path);
+  }
+  return chosen;
+}
+
 // Runs the rounds one after the other; what one has found, the next does not look for again.
 class MapperRounds {
  public:
@@ -92,7 +116,6 @@ class MapperRounds {
       const bool found_model = RunRound(round);
       if (missing_.size() < kMinPicturesOfModel || (!found_model && round > 1)) break;
     }
-    if (num_models_ == 0) TakeSmallModels();
     if (num_models_ == 0) {
       throw Error(job_.database_path.string(), "the mapper found no model (" + end_ + ")",
                   "take pictures that overlap more, or relax --Mapper.abs_pose_min_num_inliers; "
@@ -109,34 +132,27 @@ class MapperRounds {
   bool RunRound(int round) {
     const std::string name = std::to_string(round);
     const bool is_first = round == 1;
-    const MapperOptions& options = is_first ? job_.first_round : job_.later_rounds;
+    const MapperOptions& usual = is_first ? job_.first_round : job_.later_rounds;
     Trial trial;
     if (is_first && job_.global_round) {
       trial = RunTrial(kGlobalMapper, name + "_global", *job_.global_round, true, false);
     }
-    const auto try_too = [&](const std::string& suffix, bool holds_distortion, bool must_succeed) {
+    const auto try_too = [&](const std::string& suffix, const MapperOptions& options,
+                             bool holds_distortion, bool must_succeed) {
+      if (!IsDoubtful(trial)) return;
       const Trial other = RunTrial(kMapper, name + suffix, options, holds_distortion, must_succeed);
       if (trial.command.empty() || IsBetter(other, trial)) trial = other;
     };
-    if (IsDoubtful(trial)) try_too("", job_.finds_lens, is_first && trial.models.empty());
-    if (is_first && trial.holds_distortion && IsDoubtful(trial)) {
-      try_too("_free_distortion", false, false);
+    if (is_first && job_.initial_pair_round) {
+      try_too("_initial_pair", *job_.initial_pair_round, job_.finds_lens, false);
     }
+    try_too("", usual, job_.finds_lens, is_first && trial.models.empty());
+    if (is_first && trial.holds_distortion) try_too("_free_distortion", usual, false, false);
     return TakeModels("Mapper, round " + name, trial);
   }
 
   bool IsDoubtful(const Trial& trial) const {
     return trial.pictures.size() < missing_.size() || !trial.lenses_are_sound;
-  }
-
-  // COLMAP drops models of less than ten pictures, since chance brings some about. Where there is
-  // no other, they are better than none.
-  void TakeSmallModels() {
-    if (!colmap_.HasMapperOption(kMinModelSize)) return;
-    MapperOptions options = job_.later_rounds;
-    options[kMinModelSize] = std::to_string(kMinPicturesOfModel);
-    TakeModels("Mapper, small models",
-               RunTrial(kMapper, "small_models", options, job_.finds_lens, false));
   }
 
   Trial RunTrial(const std::string& command, const std::string& name, const MapperOptions& options,
@@ -161,13 +177,12 @@ class MapperRounds {
     end_ = result.Text() + ", '" + last_line + "'";
     const std::vector<fs::path> models = ListModels(trial.folder);
     if (!CheckResult(result, last_line, !models.empty(), LogOf(name), must_succeed)) return trial;
-    for (const fs::path& model : models) AddModel(model, name, &trial);
+    for (const fs::path& model : ModelsOfTheirOwn(models)) AddModel(model, name, &trial);
     return trial;
   }
 
   void AddModel(const fs::path& path, const std::string& trial_name, Trial* trial) const {
     SparseModel model = ReadSparseModel(path);
-    if (model.points3D.size() < kMinPointsOfModel) return;
     std::string lens;
     if (job_.finds_lens) {
       const std::string log = "lens_" + trial_name + "_" + path.filename().string();

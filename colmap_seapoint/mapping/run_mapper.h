@@ -23,6 +23,8 @@ struct MapperJob {
   // Where given, the global mapper is tried first; the first round proper is then left out when
   // that registers all pictures.
   std::optional<MapperOptions> global_round;
+  // Where given, the first round is tried with these before it is tried as it is (initial_pair.h).
+  std::optional<MapperOptions> initial_pair_round;
   MapperOptions first_round;
   MapperOptions later_rounds;
   // True: the lens is ours to find, so that it is held while models grow, and adjusted afterwards
@@ -35,10 +37,10 @@ struct MapperJob {
 // Maps all pictures; then, in further rounds, those that are in no model yet, as long as a round
 // finds one: the models of all rounds are numbered on. When the first round leaves pictures over,
 // or a lens that cannot be adjusted soundly, it is tried with a free distortion too, and the better
-// trial counts: the one with more pictures, then the one with the smaller error. The global
-// mapper's trial is compared in the same way. Models of fewer than 50 points are not taken. Throws
-// Error when the mapper fails or no round finds a model, UsageError when it refuses an option's
-// value.
+// trial counts: the one with more pictures, then the one with the smaller error. The trials of
+// the global mapper and of the given initial pair are compared in the same way. Models of fewer
+// than 50 points are not taken. Throws Error when the mapper fails or no round finds a model,
+// UsageError when it refuses an option's value.
 void RunMapper(const ColmapProgram& colmap, const MapperJob& job);
 
 // Model folders below `sparse`, in natural order; empty when there is no such folder.

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 #include <vector>
 
-#include "colmap_seapoint/base/natural_order.h"
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/database_features.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
@@ -14,37 +14,76 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr size_t kStrongPair = 30;  // verified matches
+constexpr size_t kOwnDive = 20;     // pictures
 
-// Ids of the pictures with a strong pair.
-std::set<uint32_t> StronglyTied(const ColmapDatabase& database) {
-  std::set<uint32_t> tied;
-  for (const ImagePair& pair : ReadVerifiedPairs(database)) {
-    if (tied.count(pair.first) > 0 && tied.count(pair.second) > 0) continue;
-    if (ReadTwoViewGeometry(database, pair).inliers.size() >= kStrongPair) {
-      tied.insert({pair.first, pair.second});
+// Groups of pictures, each named by the smallest id in it.
+class Groups {
+ public:
+  explicit Groups(const std::map<uint32_t, std::string>& pictures) {
+    for (const auto& [id, name] : pictures) parents_[id] = id;
+  }
+
+  uint32_t Of(uint32_t id) const {
+    while (parents_.at(id) != id) id = parents_.at(id);
+    return id;
+  }
+
+  void Tie(uint32_t id1, uint32_t id2) {
+    const auto [smaller, larger] = std::minmax({Of(id1), Of(id2)});
+    parents_[larger] = smaller;
+  }
+
+  std::map<uint32_t, size_t> Sizes() const {
+    std::map<uint32_t, size_t> sizes;
+    for (const auto& [id, parent] : parents_) ++sizes[Of(id)];
+    return sizes;
+  }
+
+ private:
+  std::map<uint32_t, uint32_t> parents_;
+};
+
+std::map<uint32_t, std::string> PicturesWithSeaPoints(const ColmapDatabase& database) {
+  std::map<uint32_t, std::string> pictures;
+  for (const DatabaseImage& image : ReadImages(database)) {
+    const auto features = ReadFeatures(database, image.image_id);
+    if (features && !features->points.empty()) pictures[image.image_id] = image.name;
+  }
+  return pictures;
+}
+
+std::set<uint32_t> FindUntied(const ColmapDatabase& database,
+                              const std::map<uint32_t, std::string>& pictures) {
+  Groups groups(pictures);
+  for (const auto& [id1, id2] : ReadVerifiedPairs(database)) {
+    if (pictures.count(id1) == 0 || pictures.count(id2) == 0) continue;
+    if (groups.Of(id1) == groups.Of(id2)) continue;
+    if (ReadTwoViewGeometry(database, {id1, id2}).inliers.size() >= kStrongPair) {
+      groups.Tie(id1, id2);
     }
   }
-  return tied;
+  const std::map<uint32_t, size_t> sizes = groups.Sizes();
+  const auto largest = std::max_element(
+      sizes.begin(), sizes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  std::set<uint32_t> untied;
+  for (const auto& [id, name] : pictures) {
+    const uint32_t group = groups.Of(id);
+    if (group != largest->first && sizes.at(group) < kOwnDive) untied.insert(id);
+  }
+  return untied;
 }
 
 }  // namespace
 
 std::set<std::string> FindSecondChancePictures(const ColmapDatabase& database) {
-  std::vector<DatabaseImage> pictures;
-  for (const DatabaseImage& image : ReadImages(database)) {
-    const auto features = ReadFeatures(database, image.image_id);
-    if (features && !features->points.empty()) pictures.push_back(image);
-  }
-  std::sort(pictures.begin(), pictures.end(), [](const DatabaseImage& a, const DatabaseImage& b) {
-    return NaturalLess(a.name, b.name);
-  });
-  const std::set<uint32_t> tied = StronglyTied(database);
+  const std::map<uint32_t, std::string> pictures = PicturesWithSeaPoints(database);
+  const std::set<uint32_t> untied = FindUntied(database, pictures);
   std::set<std::string> chosen;
-  for (size_t i = 0; i < pictures.size(); ++i) {
-    if (tied.count(pictures[i].image_id) > 0) continue;
-    chosen.insert(pictures[i].name);
-    if (i > 0) chosen.insert(pictures[i - 1].name);
-    if (i + 1 < pictures.size()) chosen.insert(pictures[i + 1].name);
+  for (const uint32_t id : untied) chosen.insert(pictures.at(id));
+  for (const auto& [id1, id2] : ReadTriedPairs(database)) {
+    if (pictures.count(id1) == 0 || pictures.count(id2) == 0) continue;
+    if (untied.count(id1) > 0) chosen.insert(pictures.at(id2));
+    if (untied.count(id2) > 0) chosen.insert(pictures.at(id1));
   }
   return chosen;
 }

@@ -1,6 +1,7 @@
-// A second chance for pictures that nothing ties to the others (ours). A change of scale, as
-// between pictures of an oblique camera that moves forward, defeats SeaPoints of one level. Such a
-// picture and its neighbours in the sequence get SI-SeaPoints (paper 4); all others keep their own.
+// A second chance for pictures that little ties to the others (ours). A change of scale, as between
+// pictures of an oblique camera that moves forward, defeats SeaPoints of one level, and so does
+// fine detail that is never the same twice (leaves, grass, ripples). Such a picture, and those that
+// it was matched with, get SI-SeaPoints (paper 4) beside their own.
 #pragma once
 
 #include <set>
@@ -10,9 +11,12 @@
 
 namespace colmap_seapoint {
 
-// Names of the pictures without a pair of at least 30 verified matches (what COLMAP's mapper asks
-// for to register a picture), and of the ones before and after each of them in the natural order of
-// names. Pictures without SeaPoints are passed over. Throws Error when the database cannot be read.
+// Pairs of at least 30 verified matches (what COLMAP's mapper asks for to register a picture) tie
+// pictures into groups. Untied are the pictures outside the largest group (of equal ones, that of
+// the smallest image id), but for those of groups of 20 pictures and more, which are dives of their
+// own. Returns the names of the untied pictures and of all that a pair was tried with one of them,
+// whatever came of it. Pictures without SeaPoints are passed over. Throws Error when the database
+// cannot be read.
 std::set<std::string> FindSecondChancePictures(const ColmapDatabase& database);
 
 }  // namespace colmap_seapoint

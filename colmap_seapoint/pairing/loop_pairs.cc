@@ -15,6 +15,7 @@
 #include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/io/files/content_hash.h"
 #include "colmap_seapoint/pairing/feature_store.h"
+#include "feature/feature_levels.h"
 #include "feature/retrieval/loop_candidates.h"
 #include "feature/retrieval/seapoint_retrieval.h"
 
@@ -55,10 +56,14 @@ class LoopFinder {
   FeatureStore store_;
 };
 
-// Never nullptr: SeaPoints that do not belong to their keypoints any more count as none.
+// Never nullptr: SeaPoints that do not belong to their keypoints any more count as none. Coarser
+// levels do not count either: a picture that got a second chance has the loops that it had.
 std::shared_ptr<const Features> LoopFinder::Read(int64_t place) {
   auto features = store_.Read(sequence_[static_cast<size_t>(place)].image_id);
-  return features != nullptr ? features : std::make_shared<const Features>();
+  if (features == nullptr) return std::make_shared<const Features>();
+  const size_t num_finest = NumFinest(*features);
+  if (num_finest == features->points.size()) return features;
+  return std::make_shared<const Features>(Slice(*features, 0, num_finest));
 }
 
 SeaPointIndex LoopFinder::MakeIndex() {

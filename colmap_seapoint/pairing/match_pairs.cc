@@ -14,7 +14,7 @@
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/pairing/feature_store.h"
-#include "feature/matching/overlap_share.h"
+#include "feature/match_levels.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -51,12 +51,7 @@ MatchedPair MatchOne(const Camera& camera1, const std::shared_ptr<const Features
   unverified.config = TwoViewConfig::kDegenerate;
   if (features1 == nullptr || features2 == nullptr) return {{}, unverified};
   if (features1->points.empty() || features2->points.empty()) return {{}, unverified};
-  MatchedPair matched = MatchFeatures(camera1, *features1, camera2, *features2, options);
-  if (min_overlap_share > 0 && OverlapShare(features1->points, features2->points,
-                                            matched.geometry.inliers) < min_overlap_share) {
-    matched.geometry = unverified;
-  }
-  return matched;
+  return MatchLevels(camera1, *features1, camera2, *features2, options, min_overlap_share);
 }
 
 }  // namespace

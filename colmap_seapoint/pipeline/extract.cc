@@ -16,6 +16,7 @@
 #include "colmap_seapoint/io/outputs/run_lock.h"
 #include "colmap_seapoint/pipeline/output_paths.h"
 #include "colmap_seapoint/system/memory_budget.h"
+#include "feature/extract_features.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -45,17 +46,13 @@ class Extractor {
   Extractor(const FeatureExtractorOptions& options, std::set<std::string> second_chance_names)
       : options_(options),
         second_chance_names_(std::move(second_chance_names)),
-        usual_(options.extraction),
-        second_chance_(options.extraction) {
-    second_chance_.options.num_levels = kSecondChanceLevels;
-    second_chance_.hash = OptionsFingerprint(OptionValues(second_chance_.options));
-  }
+        hash_of_options_(OptionsFingerprint(OptionValues(options.extraction))) {}
 
   // Called from several threads at once. `stored`: the fingerprint in the database. The picture is
   // read once: what is hashed is what is decoded.
   Extracted Extract(const std::string& name, const std::optional<std::string>& stored) const {
     const auto picture_path = std::filesystem::path(options_.image_path) / name;
-    const Extraction& extraction = second_chance_names_.count(name) > 0 ? second_chance_ : usual_;
+    const bool is_second_chance = second_chance_names_.count(name) > 0;
     Extracted result;
     std::string mask_hash;
     try {
@@ -63,35 +60,30 @@ class Extractor {
       result.input = {name, file.Size(), file.Hash()};
       const std::optional<PictureFile> mask = OpenMask(name);
       if (mask) mask_hash = mask->Hash();
-      result.fingerprint = Fingerprint(result.input, mask_hash, extraction);
+      result.fingerprint = Fingerprint(result.input, mask_hash, is_second_chance);
       result.is_unchanged = stored == result.fingerprint;
       if (result.is_unchanged) return result;
       // Its SeaPoints take less than decoding it does.
       const MemoryShare share(2 * file.BytesToDecode());
       const GrayImage picture = file.DecodeGray();
-      result.features =
-          ExtractFeatures(picture, DecodeMask(name, mask, picture), extraction.options).features;
+      const GrayImage mask_picture = DecodeMask(name, mask, picture);
+      result.features = is_second_chance
+                            ? ExtractSecondChance(picture, mask_picture, options_.extraction)
+                            : ExtractFeatures(picture, mask_picture, options_.extraction).features;
       if (result.features.points.empty()) result.reason = kNoSeaPoint;
     } catch (const Error& error) {
       if (result.input.name.empty()) result.input = DescribeInput(name, picture_path);
       result.reason = error.Finding();
-      result.fingerprint = kUnreadable + Fingerprint(result.input, mask_hash, extraction);
+      result.fingerprint = kUnreadable + Fingerprint(result.input, mask_hash, is_second_chance);
     }
     return result;
   }
 
  private:
-  struct Extraction {
-    explicit Extraction(const SeaPointExtractionOptions& extraction_options)
-        : options(extraction_options), hash(OptionsFingerprint(OptionValues(extraction_options))) {}
-    SeaPointExtractionOptions options;
-    std::string hash;
-  };
-
-  static std::string Fingerprint(const RunReport::Input& picture, const std::string& mask_hash,
-                                 const Extraction& extraction) {
+  std::string Fingerprint(const RunReport::Input& picture, const std::string& mask_hash,
+                          bool is_second_chance) const {
     return kExtractionVersion + (":" + std::to_string(picture.size)) + ":" + picture.hash + ":" +
-           mask_hash + ":" + extraction.hash;
+           mask_hash + ":" + hash_of_options_ + (is_second_chance ? ":second chance" : "");
   }
 
   std::filesystem::path MaskPath(const std::string& name) const {
@@ -132,7 +124,7 @@ class Extractor {
 
   const FeatureExtractorOptions& options_;
   std::set<std::string> second_chance_names_;
-  Extraction usual_, second_chance_;
+  std::string hash_of_options_;
 };
 
 void Validate(const FeatureExtractorOptions& options) {

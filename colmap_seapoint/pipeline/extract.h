@@ -25,9 +25,6 @@ struct FeatureExtractorOptions {
   void Bind(OptionTable* table);
 };
 
-// Pyramid levels of the SI-SeaPoints of pictures that nothing ties to the others (second_chance.h).
-inline constexpr int kSecondChanceLevels = 5;
-
 // The pictures of a folder: those whose header can be read, and what became of the others.
 struct PictureSet {
   int64_t num_listed = 0;
@@ -40,7 +37,7 @@ struct PictureSet {
 PictureSet ReadPictureSet(const FeatureExtractorOptions& options);
 
 // Extracts the pictures whose file, mask or options changed, and leaves the others alone; those in
-// `second_chance_names` get SI-SeaPoints of kSecondChanceLevels levels. Also writes
+// `second_chance_names` get SI-SeaPoints beside their own (ExtractSecondChance). Also writes
 // <database>.feature_extractor.run.json. Each picture's file is read once. Throws Error when no
 // picture is usable, or when the database holds keypoints of other software for one of them
 // (nothing is written then).

@@ -11,6 +11,7 @@
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/io/files/run_report_json.h"
+#include "colmap_seapoint/mapping/initial_pair.h"
 #include "colmap_seapoint/pipeline/workspace_database.h"
 
 namespace colmap_seapoint {
@@ -128,6 +129,9 @@ Mapping MapPictures(MappingPlan plan, const ColmapDatabase& database, WorkspaceS
   if (plan.job.pictures.empty()) {
     throw Error(plan.job.image_path.string(), "no two of its pictures show the same place",
                 "take pictures that overlap more, or raise --SeaPointExtraction.max_num_features");
+  }
+  if (const auto pair = FindInitialPair(database)) {
+    plan.job.initial_pair_round = OptionsOfInitialPair(plan.colmap, plan.job.first_round, *pair);
   }
   const Stage stage = {"mapper", kMapperVersion, Inputs(plan, database, *state),
                        "The models in " + plan.sparse.string() + " are there already"};

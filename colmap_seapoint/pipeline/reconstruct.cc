@@ -106,8 +106,9 @@ RunReport MatchAll(const Options& options, const Workspace& workspace, size_t nu
   return MatchSequentially(sequential, database);
 }
 
-// SeaPoints and matches of all pictures; then once more with SI-SeaPoints for those that are
-// untied. An earlier run that found these already, among the same pictures, spares the first pass.
+// SeaPoints and matches of all pictures; then once more with SI-SeaPoints beside them for those
+// that are untied, and their partners. An earlier run that found these already, among the same
+// pictures, spares the first pass.
 void ExtractAndMatch(const Options& options, const Workspace& workspace, const PictureSet& pictures,
                      const Stage& second_chance, ColmapDatabase* database, WorkspaceState* state,
                      RunReport* report) {
@@ -131,7 +132,7 @@ void ExtractAndMatch(const Options& options, const Workspace& workspace, const P
       });
   if (found.untied.empty()) return;
   LogInfo(std::to_string(found.untied.size()) +
-          " pictures are untied, or next to one that is: SI-SeaPoints for them");
+          " pictures are untied, or may tie one that is: SI-SeaPoints for them too");
   pass(found.untied);
 }
 

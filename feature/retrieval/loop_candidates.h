@@ -10,7 +10,7 @@ namespace colmap_seapoint {
 
 // Raise it whenever the same SeaPoints give other loop pairs than before, together with the hash in
 // tests/feature/retrieval_version_test.cc.
-inline constexpr char kRetrievalVersion[] = "1";
+inline constexpr char kRetrievalVersion[] = "2";
 
 struct LoopCandidate {
   uint32_t first = 0, second = 0;  // places in the sequence, smaller first

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "feature/descriptor/rbrief_descriptor.h"
 #include "tests/synthetic/noise_texture.h"
@@ -124,6 +125,28 @@ TEST(ExtractFeaturesTest, MaskHoldsOnEveryLevel) {
   ASSERT_GT(features.points.size(), 90u);
   for (const SeaPoint& point : features.points) {
     EXPECT_GT(point.x, 250 - 1.5 * point.scale) << point.scale;
+  }
+}
+
+// Its own SeaPoints stand first, as they are without it; then levels that follow each other: from
+// the next one on in a small picture, from 0.75 megapixels on in a large one.
+TEST(ExtractSecondChanceTest, AddsCoarserLevels) {
+  for (const auto& [width, height, first_scale] :
+       {std::tuple{640, 480, std::sqrt(2.0)}, std::tuple{1600, 1200, 2.0}}) {
+    const GrayImage picture = TexturedPicture(width, height);
+    const Features usual = ExtractFeatures(picture, GrayImage(), Interval(350, 420)).features;
+    const Features more = ExtractSecondChance(picture, GrayImage(), Interval(350, 420));
+    ASSERT_GT(more.points.size(), usual.points.size());
+    ASSERT_EQ(more.points.size(), more.descriptors.size());
+    for (size_t i = 0; i < usual.points.size(); ++i) {
+      EXPECT_EQ(more.points[i].x, usual.points[i].x);
+      EXPECT_EQ(more.points[i].scale, 1);
+      EXPECT_TRUE(more.descriptors[i] == usual.descriptors[i]);
+    }
+    EXPECT_NEAR(more.points[usual.points.size()].scale, first_scale, 0.02);
+    for (size_t i = usual.points.size() + 1; i < more.points.size(); ++i) {
+      EXPECT_LT(more.points[i].scale, 1.5f * more.points[i - 1].scale);
+    }
   }
 }
 

@@ -71,7 +71,7 @@ uint64_t HashOf(const MatchedPair& pair) {
   return hash.Value();
 }
 
-constexpr char kVersionOfTheHashes[] = "4";  // to be raised together with the hashes
+constexpr char kVersionOfTheHashes[] = "5";  // to be raised together with the hashes
 constexpr uint64_t kUncalibrated = 0xFAB287F4C3809622;
 constexpr uint64_t kCalibrated = 0xF73B80CBA95A9BE5;
 constexpr uint64_t kSift = 0xF5E65B60D5367F43;

@@ -83,11 +83,13 @@ TEST_F(ColmapProgramTest, OnlyWhatThisVersionKnowsIsHandedOn) {
   EXPECT_EQ(OptionsOfRound(colmap_.Program(), Round::kFirst, "archive", 5, {}),
             (MapperOptions{{"random_seed", "5"},
                            {"Mapper.num_threads", "1"},
+                           {"Mapper.min_model_size", "3"},
                            {"Mapper.abs_pose_min_num_inliers", "20"}}));
   SetVersion4();
   EXPECT_EQ(OptionsOfRound(colmap_.Program(), Round::kFirst, "archive", 5, {}),
             (MapperOptions{{"Mapper.random_seed", "5"},
                            {"Mapper.num_threads", "1"},
+                           {"Mapper.min_model_size", "3"},
                            {"Mapper.abs_pose_min_num_inliers", "20"}}));
 }
 
@@ -123,10 +125,10 @@ TEST_F(ColmapProgramTest, TheUsersOptionsWinAndAreChecked) {
   SetVersion3();
   const ColmapProgram colmap = colmap_.Program();
   const MapperOptions users = {{"Mapper.abs_pose_min_num_inliers", "12"},
-                               {"Mapper.min_model_size", "3"}};
+                               {"Mapper.min_model_size", "5"}};
   const MapperOptions options = OptionsOfRound(colmap, Round::kLater, "field", 0, users);
   EXPECT_EQ(options.at("Mapper.abs_pose_min_num_inliers"), "12");
-  EXPECT_EQ(options.at("Mapper.min_model_size"), "3");
+  EXPECT_EQ(options.at("Mapper.min_model_size"), "5");
   try {
     OptionsOfRound(colmap, Round::kFirst, "field", 0, {{"Mapper.ba_global_frames_ratio", "2"}});
     ADD_FAILURE() << "an option of another version was taken";

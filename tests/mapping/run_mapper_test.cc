@@ -162,14 +162,22 @@ TEST_F(RunMapperTest, AllModelsOfARoundCountButThoseOfAHandfulOfPoints) {
   EXPECT_EQ(colmap_.NumCalls(kMapper), 1);
 }
 
-TEST_F(RunMapperTest, ModelsThatColmapDropsAsSmallAreBetterThanNone) {
-  colmap_.Ends(kMapper, 1, "ERROR: failed to create sparse model", 1);
-  colmap_.Leaves(kMapper, 3, "0", Part(1, 3));
+TEST_F(RunMapperTest, FirstAttemptsThatALargerModelHoldsAreNoModels) {
+  colmap_.Leaves(kMapper, 1, "0", Part(1, 3));
+  colmap_.Leaves(kMapper, 1, "1", Part(6, 8));
+  colmap_.Leaves(kMapper, 1, "2", Part(1, 7));  // all of the first, two of the second
+  colmap_.Leaves(kMapper, 1, "3", Part(8, 10));
   Run();
-  EXPECT_EQ(colmap_.Value(kMapper, 2, "Mapper.min_model_size"), "4");
-  EXPECT_EQ(colmap_.Value(kMapper, 3, "Mapper.min_model_size"), "3");
+  EXPECT_EQ(NumModels(), 2u);
+  EXPECT_EQ(NamesIn("0").size(), 7u);
+  EXPECT_EQ(NamesIn("1"), (std::set<std::string>{"img10.jpg", "img8.jpg", "img9.jpg"}));
+}
+
+TEST_F(RunMapperTest, AModelOfThreePicturesIsFoundInTheFirstRound) {
+  colmap_.Leaves(kMapper, 1, "0", Part(1, 3));
+  Run();
+  EXPECT_EQ(colmap_.NumCalls(kMapper), 2);  // the other one for those that are missing
   EXPECT_EQ(NamesIn("0").size(), 3u);
-  EXPECT_TRUE(fs::exists(dir_ / "logs" / "mapper_small_models.log"));
 }
 
 TEST_F(RunMapperTest, NoModelAtAllIsAnErrorThatNamesTheLog) {
@@ -265,6 +273,36 @@ TEST_F(RunMapperTest, AFailureOfTheSecondTrialLeavesTheFirst) {
   Run();
   EXPECT_NE(testing::internal::GetCapturedStderr().find("out of memory"), std::string::npos);
   EXPECT_EQ(NamesIn("0").size(), 9u);
+}
+
+class InitialPairRound : public RunMapperTest {
+ protected:
+  InitialPairRound() { job_.initial_pair_round = MapperOptions{{"Mapper.init_image_id1", "7"}}; }
+};
+
+TEST_F(InitialPairRound, ThatFindsAllIsEnough) {
+  colmap_.Leaves(kMapper, 1, "0", survey_);
+  Run();
+  EXPECT_EQ(colmap_.NumCalls(kMapper), 1);
+  EXPECT_EQ(colmap_.Value(kMapper, 1, "Mapper.init_image_id1"), "7");
+  EXPECT_TRUE(fs::exists(dir_ / "logs" / "mapper_1_initial_pair.log"));
+}
+
+TEST_F(InitialPairRound, ThatLeavesPicturesOutIsComparedWithTheMappersOwnChoice) {
+  colmap_.Leaves(kMapper, 1, "0", Part(1, 7));
+  colmap_.Leaves(kMapper, 2, "0", Part(1, 9));
+  Run();
+  EXPECT_EQ(colmap_.NumCalls(kMapper), 2);
+  EXPECT_EQ(colmap_.Value(kMapper, 2, "Mapper.init_image_id1"), "");
+  EXPECT_EQ(NamesIn("0").size(), 9u);
+}
+
+TEST_F(InitialPairRound, ThatFailsCostsNothing) {
+  colmap_.Ends(kMapper, 1, "Initialization failed", 1);
+  colmap_.Leaves(kMapper, 2, "0", survey_);
+  Run();
+  EXPECT_EQ(NamesIn("0").size(), 10u);
+  EXPECT_EQ(NumModels(), 1u);
 }
 
 class GlobalRound : public RunMapperTest {

@@ -14,11 +14,13 @@ using Names = std::set<std::string>;
 class SecondChanceTest : public testing::Test {
  protected:
   SecondChanceTest() {
-    const uint32_t camera = AddCamera(&database_, MakeCamera(CameraModel::kPinhole, 500, 640, 480));
-    for (int i = 12; i >= 1; --i) {
-      ids_[i] = AddImage(&database_, "img" + std::to_string(i) + ".jpg", camera);
-      WriteFeatures(&database_, ids_[i], MakeFeatures(40, ids_[i]), "picture");
-    }
+    camera_ = AddCamera(&database_, MakeCamera(CameraModel::kPinhole, 500, 640, 480));
+    for (int i = 12; i >= 1; --i) Add(i);
+  }
+
+  void Add(int i) {
+    ids_[i] = AddImage(&database_, "img" + std::to_string(i) + ".jpg", camera_);
+    WriteFeatures(&database_, ids_[i], MakeFeatures(40, ids_[i]), "picture");
   }
 
   void Tie(int i, int j, uint32_t num_inliers) {
@@ -27,44 +29,75 @@ class SecondChanceTest : public testing::Test {
     WriteMatches(&database_, ids_[i], ids_[j], matches, MakeGeometry(matches));
   }
 
+  void TryInVain(int i, int j) {
+    TwoViewGeometry unverified;
+    unverified.config = TwoViewConfig::kDegenerate;
+    WriteMatches(&database_, ids_[i], ids_[j], {}, unverified);
+  }
+
   Names Find() { return FindSecondChancePictures(database_); }
 
   TempDir dir_;
   const std::filesystem::path path_ = dir_ / "database.db";
   ColmapDatabase database_{path_, ColmapDatabase::Mode::kCreateIfMissing};
+  uint32_t camera_ = 0;
   std::map<int, uint32_t> ids_;
 };
 
 TEST_F(SecondChanceTest, NobodyWhereAllAreTied) {
-  for (int i = 1; i <= 12; i += 2) Tie(i, i + 1, 30);
+  for (int i = 1; i < 12; ++i) Tie(i, i + 1, 30);
   EXPECT_EQ(Find(), Names());
 }
 
-TEST_F(SecondChanceTest, AnUntiedPictureAndItsNeighboursInNaturalOrder) {
-  for (const int i : {1, 3, 5, 7}) Tie(i, i + 1, 35);
-  Tie(11, 12, 30);
-  Tie(10, 12, 30);
-  Tie(9, 10, 29);  // one match too few
-  EXPECT_EQ(Find(), (Names{"img8.jpg", "img9.jpg", "img10.jpg"}));
+TEST_F(SecondChanceTest, AnUntiedPictureAndThoseItWasTriedWith) {
+  for (int i = 1; i < 12; ++i) {
+    if (i != 4 && i != 5) Tie(i, i + 1, 35);
+  }
+  Tie(4, 5, 29);  // one match too few
+  TryInVain(5, 6);
+  TryInVain(5, 11);
+  TryInVain(7, 9);  // both are tied
+  // 1 to 4 are no part of the largest group either, 6 to 12.
+  EXPECT_EQ(Find(), (Names{"img1.jpg", "img2.jpg", "img3.jpg", "img4.jpg", "img5.jpg", "img6.jpg",
+                           "img11.jpg"}));
 }
 
-TEST_F(SecondChanceTest, FirstAndLastHaveOneNeighbour) {
-  for (const int i : {2, 4, 6, 8, 10}) Tie(i, i + 1, 40);
-  EXPECT_EQ(Find(), (Names{"img1.jpg", "img2.jpg", "img11.jpg", "img12.jpg"}));
+TEST_F(SecondChanceTest, OfGroupsOfOneSizeTheOneOfTheSmallestIdIsTheTiedOne) {
+  for (int i = 1; i < 12; ++i) {
+    if (i != 6) Tie(i, i + 1, 40);
+  }
+  // Ids run against the names: 12 has the smallest.
+  EXPECT_EQ(Find(),
+            (Names{"img1.jpg", "img2.jpg", "img3.jpg", "img4.jpg", "img5.jpg", "img6.jpg"}));
 }
 
-TEST_F(SecondChanceTest, OneStrongPairAmongWeakOnesIsEnough) {
+TEST_F(SecondChanceTest, AGroupOfTwentyIsADiveOfItsOwn) {
+  for (int i = 13; i <= 50; ++i) Add(i);
+  for (int i = 1; i < 50; ++i) {
+    if (i != 25 && i != 45) Tie(i, i + 1, 30);
+  }
+  EXPECT_EQ(Find(), (Names{"img46.jpg", "img47.jpg", "img48.jpg", "img49.jpg", "img50.jpg"}));
+}
+
+TEST_F(SecondChanceTest, ManyWeakPairsTieNothing) {
   for (int i = 1; i < 12; ++i) Tie(i, i + 1, 12);
-  for (int i = 1; i <= 12; i += 2) Tie(i, (i + 2) % 12 + 1, 31);
-  EXPECT_EQ(Find(), Names());
+  EXPECT_EQ(Find().size(), 12u);
 }
 
 TEST_F(SecondChanceTest, PicturesWithoutSeaPointsDoNotCount) {
-  for (const int i : {1, 3, 5, 10}) Tie(i, i + 1, 35);
-  Tie(9, 12, 35);
-  // Neither is img7.jpg chosen, nor does it stand between img6.jpg and img8.jpg.
+  for (int i = 1; i < 12; ++i) {
+    if (i != 6 && i != 7) Tie(i, i + 1, 35);
+  }
+  Tie(6, 8, 35);
+  TryInVain(7, 8);
   WriteFeatures(&database_, ids_[7], Features(), "picture");
-  EXPECT_EQ(Find(), (Names{"img6.jpg", "img8.jpg", "img9.jpg"}));
+  EXPECT_EQ(Find(), Names());
+}
+
+TEST(SecondChanceOfNothing, IsNobody) {
+  TempDir dir;
+  const ColmapDatabase database(dir / "empty.db", ColmapDatabase::Mode::kCreateIfMissing);
+  EXPECT_EQ(FindSecondChancePictures(database), Names());
 }
 
 }  // namespace

@@ -101,7 +101,7 @@ TEST_F(PlanMappingTest, FieldTriesTheGlobalMapperFirst) {
   // Not where the user's options are for the other mapper, nor where COLMAP has none.
   EXPECT_FALSE(Plan([&](Options* options) {
                  field(options);
-                 options->mapper["Mapper.min_model_size"] = "3";
+                 options->mapper["Mapper.min_model_size"] = "4";
                }).job.global_round.has_value());
   EXPECT_FALSE(Plan([&](Options* options) {
                  field(options);
@@ -226,7 +226,7 @@ TEST_F(MapPicturesTest, MapsAgainWhenTheDatabasesContentChanges) {
 
 TEST_F(MapPicturesTest, MapsAgainWhenOptionsChange) {
   const std::vector<std::function<void(Options*)>> changes = {
-      [](Options* options) { options->mapper["Mapper.min_model_size"] = "3"; },
+      [](Options* options) { options->mapper["Mapper.min_model_size"] = "4"; },
       [](Options* options) { options->adjust_principal_point = false; },
       [](Options* options) { options->run.random_seed = 1; },
       [](Options* options) { options->reader.camera_params = "480,480,200,150,0,0,0,0"; },

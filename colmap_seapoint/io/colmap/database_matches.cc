@@ -155,6 +155,24 @@ void CheckIndices(const SqlConnection& db, ImagePair pair, const FeatureMatches&
   }
 }
 
+// The pairs whose row fulfils `condition`, both images of which are in the database; by pair_id.
+std::vector<ImagePair> ReadPairs(const ColmapDatabase& database, const std::string& condition) {
+  std::vector<ImagePair> pairs;
+  SqlStatement rows(database.Connection(),
+                    "SELECT pair_id / ?1 AS id1, pair_id % ?1 AS id2 FROM two_view_geometries "
+                    "WHERE " +
+                        condition +
+                        " AND EXISTS(SELECT 1 FROM images WHERE image_id = id1) "
+                        "AND EXISTS(SELECT 1 FROM images WHERE image_id = id2) ORDER BY pair_id");
+  rows.Bind(kMaxImageId);
+  while (rows.Step()) {
+    const ImagePair pair(static_cast<uint32_t>(rows[0].Int()),
+                         static_cast<uint32_t>(rows[1].Int()));
+    if (pair.first < pair.second) pairs.push_back(pair);
+  }
+  return pairs;
+}
+
 }  // namespace
 
 bool HasMatches(const ColmapDatabase& database, ImagePair pair) {
@@ -213,19 +231,11 @@ TwoViewGeometry ReadTwoViewGeometry(const ColmapDatabase& database, ImagePair pa
 }
 
 std::vector<ImagePair> ReadVerifiedPairs(const ColmapDatabase& database) {
-  const SqlConnection& db = database.Connection();
-  std::vector<ImagePair> pairs;
-  SqlStatement rows(db,
-                    "SELECT pair_id / ?1 AS id1, pair_id % ?1 AS id2 FROM two_view_geometries "
-                    "WHERE rows > 0 AND EXISTS(SELECT 1 FROM images WHERE image_id = id1) "
-                    "AND EXISTS(SELECT 1 FROM images WHERE image_id = id2) ORDER BY pair_id");
-  rows.Bind(kMaxImageId);
-  while (rows.Step()) {
-    const ImagePair pair(static_cast<uint32_t>(rows[0].Int()),
-                         static_cast<uint32_t>(rows[1].Int()));
-    if (pair.first < pair.second) pairs.push_back(pair);
-  }
-  return pairs;
+  return ReadPairs(database, "rows > 0");
+}
+
+std::vector<ImagePair> ReadTriedPairs(const ColmapDatabase& database) {
+  return ReadPairs(database, "(rows <> 0 OR config <> 0)");
 }
 
 void DeleteMatchesOfImage(ColmapDatabase* database, uint32_t image_id) {

@@ -31,6 +31,9 @@ TwoViewGeometry ReadTwoViewGeometry(const ColmapDatabase& database, ImagePair pa
 // The pairs with at least one verified match and both images in the database, by pair_id.
 std::vector<ImagePair> ReadVerifiedPairs(const ColmapDatabase& database);
 
+// The same of all pairs that were matched, with a verified match or without.
+std::vector<ImagePair> ReadTriedPairs(const ColmapDatabase& database);
+
 // Rows of both tables. For database_features.cc and database_loops.cc.
 void DeleteMatchesOfImage(ColmapDatabase* database, uint32_t image_id);
 void DeleteMatchesOfPair(ColmapDatabase* database, ImagePair pair);
