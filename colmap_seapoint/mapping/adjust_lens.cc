@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "colmap_seapoint/io/colmap/colmap_model.h"
-#include "colmap_seapoint/mapping/bundle_adjustment.h"
+#include "colmap_seapoint/adjustment/bundle_adjustment.h"
 #include "colmap_seapoint/mapping/retriangulate.h"
 
 namespace colmap_seapoint {

@@ -1,4 +1,4 @@
-#include "colmap_seapoint/mapping/bundle_adjustment.h"
+#include "colmap_seapoint/adjustment/bundle_adjustment.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,101 @@
+#include "colmap_seapoint/adjustment/bundle_adjustment.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "colmap_seapoint/adjustment/bundle_minimizer.h"
+#include "colmap_seapoint/base/median.h"
+#include "colmap_seapoint/base/progress.h"
+
+namespace colmap_seapoint {
+namespace {
+
+std::map<uint32_t, LensFreedom> FreedomOfLenses(const BundleAdjustmentOptions& options,
+                                                const SparseModel& model) {
+  std::map<uint32_t, LensFreedom> freedom = options.lenses;
+  for (const auto& [id, camera] : model.cameras) {
+    const auto principal = static_cast<uint32_t>(NumFocals(camera.model));
+    LensFreedom& of_camera = freedom[id];
+    if (!options.refine_principal_point) of_camera.held_params |= 3u << principal;
+    of_camera.principal_point_sigma =
+        options.principal_point_sigma * std::max(camera.width, camera.height);
+  }
+  return freedom;
+}
+
+// Of one coordinate, pixels, as the median of all errors has it where they are normally distributed.
+double ErrorSigma(const Bundle& bundle, const BundleValues& values) {
+  constexpr double kMedianOfUnit = 1.17741;  // of the length of a vector with two such coordinates
+  std::vector<double> errors;
+  errors.reserve(bundle.NumObservations());
+  for (size_t k = 0; k < bundle.NumObservations(); ++k) {
+    const uint32_t picture = bundle.picture_of[k];
+    const uint32_t lens = bundle.lens_of_picture[picture];
+    const Eigen::Vector2d pixel =
+        ProjectThroughLens(bundle.lenses[lens].model, values.lenses[lens],
+                           values.poses[picture] * values.points[bundle.point_of[k]]);
+    const double error = (pixel - bundle.pixels[k]).norm();
+    if (std::isfinite(error)) errors.push_back(error);
+  }
+  return errors.empty() ? 0 : UpperMedian(std::move(errors)) / kMedianOfUnit;
+}
+
+void UpdatePointErrors(SparseModel* model) {
+  std::map<uint64_t, double> sums;
+  for (const PosedImage& image : model->images) {
+    const auto camera = model->cameras.find(image.camera_id);
+    if (camera == model->cameras.end()) continue;
+    for (size_t i = 0; i < image.points2D.size(); ++i) {
+      const auto point = model->points3D.find(image.point3D_ids[i]);
+      if (point == model->points3D.end()) continue;
+      const auto pixel = camera->second.ImgFromCam(image.cam_from_world * point->second.xyz);
+      if (pixel) sums[point->first] += (*pixel - image.points2D[i]).norm();
+    }
+  }
+  for (auto& [id, point] : model->points3D) {
+    if (!point.track.empty()) point.error = sums[id] / static_cast<double>(point.track.size());
+  }
+}
+
+}  // namespace
+
+std::optional<BundleAdjustment> AdjustBundleInFull(const BundleAdjustmentOptions& options,
+                                                   const SparseModel& model) {
+  const std::map<uint32_t, LensFreedom> freedom = FreedomOfLenses(options, model);
+  const Bundle bundle = MakeBundle(model, freedom);
+  if (bundle.NumObservations() == 0) return std::nullopt;
+  BundleValues values = ReadValues(bundle, freedom, model);
+  BundleMinimizer minimizer(bundle, options.num_threads);
+  Progress progress("Bundle adjustment, steps at most", options.max_num_iterations);
+  Minimum minimum = minimizer.Run(options.loss, options.max_num_iterations,
+                                  [&](int step) { progress.Update(step); }, &values);
+  BundleAdjustment adjustment;
+  adjustment.num_iterations = minimum.num_iterations;
+  adjustment.error_sigma = ErrorSigma(bundle, values);
+  if (options.last_loss) {
+    const RobustLoss last = {*options.last_loss,
+                             options.last_scale * std::max(adjustment.error_sigma, 1e-3)};
+    minimum = minimizer.Run(last, options.max_num_iterations,
+                            [&](int step) { progress.Update(step); }, &values);
+    adjustment.num_iterations += minimum.num_iterations;
+  }
+  adjustment.cost = minimum.cost;
+  adjustment.is_converged = minimum.is_converged;
+  for (size_t c = 0; c < bundle.lenses.size(); ++c) {
+    const LensParams sigmas = minimizer.LensSigmas(c, adjustment.error_sigma);
+    adjustment.lens_sigmas[bundle.camera_id[c]].assign(sigmas.begin(), sigmas.end());
+  }
+  adjustment.model = model;
+  WriteValues(bundle, values, &adjustment.model);
+  UpdatePointErrors(&adjustment.model);
+  return adjustment;
+}
+
+std::optional<SparseModel> AdjustBundle(const BundleAdjustmentOptions& options,
+                                        const SparseModel& model) {
+  std::optional<BundleAdjustment> adjustment = AdjustBundleInFull(options, model);
+  if (!adjustment) return std::nullopt;
+  return std::move(adjustment->model);
+}
+
+}  // namespace colmap_seapoint
