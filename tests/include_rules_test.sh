@@ -29,7 +29,8 @@ densify/maps                    colmap_seapoint/base densify/match densify/cloud
 densify                         colmap_seapoint/base densify/*
 colmap_seapoint/georeference    colmap_seapoint/base colmap_seapoint/io/files
 colmap_seapoint/compare         colmap_seapoint/base colmap_seapoint/io/cloud
-colmap_seapoint/mapping         colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/colmap
+colmap_seapoint/adjustment      colmap_seapoint/base
+colmap_seapoint/mapping         colmap_seapoint/base colmap_seapoint/adjustment colmap_seapoint/io/files colmap_seapoint/io/colmap
 colmap_seapoint/pictures        colmap_seapoint/base colmap_seapoint/io/* feature feature/* densify densify/*
 colmap_seapoint/pairing         colmap_seapoint/base colmap_seapoint/io/* feature feature/*
 colmap_seapoint/report          colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/georeference densify densify/*
@@ -67,8 +68,8 @@ only_in() {  # WHAT REGEX ALLOWED_PATHS_REGEX
     grep -vE "^($3)")
   [ -z "$found" ] || { echo "$1:"; echo "$found"; failed=1; }
 }
-only_in "Ceres solves in mapping, georeference and two-view verification only" '#include <ceres/' \
-  'colmap_seapoint/(mapping|georeference)/|feature/matching/'
+only_in "Ceres solves in georeference and two-view verification only" '#include <ceres/' \
+  'colmap_seapoint/georeference/|feature/matching/'
 only_in "children are started by mapping only" 'RunSubprocess\(|io/files/subprocess\.h' \
   'colmap_seapoint/(mapping|io/files)/'
 only_in "SQLite is io's" '#include <sqlite3\.h>|io/files/sqlite\.h' 'colmap_seapoint/io/(files|colmap)/'

@@ -122,7 +122,8 @@ void BlockCholesky::ScatterMatrix(const BlockMatrix& matrix, const Eigen::Vector
       const auto [first, last] = std::minmax(row, column);
       const auto begin = rows_.begin() + static_cast<std::ptrdiff_t>(column_begin_[first]);
       const auto end = rows_.begin() + static_cast<std::ptrdiff_t>(column_begin_[first + 1]);
-      Block& block = factor_[static_cast<size_t>(std::lower_bound(begin, end, last) - rows_.begin())];
+      Block& block =
+          factor_[static_cast<size_t>(std::lower_bound(begin, end, last) - rows_.begin())];
       if (row >= column) {
         block = matrix.blocks[k];
       } else {
@@ -156,8 +157,7 @@ bool BlockCholesky::Factor(const BlockMatrix& matrix, const Eigen::VectorXd& add
   return is_definite;
 }
 
-void BlockCholesky::SubtractColumn(const RowEntry& entry,
-                                   const std::vector<size_t>& place_of_row) {
+void BlockCholesky::SubtractColumn(const RowEntry& entry, const std::vector<size_t>& place_of_row) {
   const Block right = factor_[entry.place].transpose();
   for (size_t k = entry.place; k < column_begin_[entry.column + 1]; ++k) {
     factor_[place_of_row[rows_[k]]].noalias() -= factor_[k].lazyProduct(right);

@@ -70,7 +70,8 @@ BundleLens LensOf(const Camera& camera, const LensFreedom& freedom) {
   }
   lens.principal_point = {camera.PrincipalX(), camera.PrincipalY()};
   if (freedom.principal_point_sigma > 0) {
-    lens.principal_point_weight = 1 / (freedom.principal_point_sigma * freedom.principal_point_sigma);
+    lens.principal_point_weight =
+        1 / (freedom.principal_point_sigma * freedom.principal_point_sigma);
   }
   return lens;
 }
@@ -93,8 +94,7 @@ void AddPictures(const SparseModel& model, const std::map<uint32_t, LensFreedom>
     const auto [lens, is_new] =
         lens_of_camera.emplace(camera_id, static_cast<uint32_t>(lens_of_camera.size()));
     if (is_new) {
-      bundle->lenses.push_back(
-          LensOf(model.cameras.at(camera_id), FreedomOf(freedom, camera_id)));
+      bundle->lenses.push_back(LensOf(model.cameras.at(camera_id), FreedomOf(freedom, camera_id)));
       bundle->camera_id.push_back(camera_id);
     }
     bundle->lens_of_picture.push_back(lens->second);

@@ -10,6 +10,9 @@
 namespace colmap_seapoint {
 namespace {
 
+// Pixels. Nothing is measured better.
+constexpr double kMinResidualSigma = 0.05;
+
 std::map<uint32_t, LensFreedom> FreedomOfLenses(const BundleAdjustmentOptions& options,
                                                 const SparseModel& model) {
   std::map<uint32_t, LensFreedom> freedom = options.lenses;
@@ -23,8 +26,9 @@ std::map<uint32_t, LensFreedom> FreedomOfLenses(const BundleAdjustmentOptions& o
   return freedom;
 }
 
-// Of one coordinate, pixels, as the median of all errors has it where they are normally distributed.
-double ErrorSigma(const Bundle& bundle, const BundleValues& values) {
+// Of one coordinate, pixels, as the median of all errors has it where they are normally
+// distributed.
+double ResidualSigma(const Bundle& bundle, const BundleValues& values) {
   constexpr double kMedianOfUnit = 1.17741;  // of the length of a vector with two such coordinates
   std::vector<double> errors;
   errors.reserve(bundle.NumObservations());
@@ -38,6 +42,27 @@ double ErrorSigma(const Bundle& bundle, const BundleValues& values) {
     if (std::isfinite(error)) errors.push_back(error);
   }
   return errors.empty() ? 0 : UpperMedian(std::move(errors)) / kMedianOfUnit;
+}
+
+// How much larger errors are than what an adjustment leaves of them, since it fits so many values.
+double ErrorsToResiduals(const Bundle& bundle) {
+  double num_free = 3.0 * static_cast<double>(bundle.NumPoints()) +
+                    6.0 * static_cast<double>(bundle.NumPictures()) - 7;
+  for (const BundleLens& lens : bundle.lenses) num_free += lens.num_free;
+  const double num_residuals = 2.0 * static_cast<double>(bundle.NumObservations());
+  return num_residuals > num_free ? std::sqrt(num_residuals / (num_residuals - num_free)) : 1;
+}
+
+std::map<uint32_t, std::vector<double>> LensSigmas(const Bundle& bundle,
+                                                   const BundleMinimizer& minimizer,
+                                                   double error_sigma) {
+  std::map<uint32_t, std::vector<double>> sigmas;
+  for (size_t c = 0; c < bundle.lenses.size(); ++c) {
+    const LensParams of_lens = minimizer.LensSigmas(c, error_sigma);
+    const int count = FindCameraModel(static_cast<int>(bundle.lenses[c].model))->num_params;
+    sigmas[bundle.camera_id[c]].assign(of_lens.begin(), of_lens.begin() + count);
+  }
+  return sigmas;
 }
 
 void UpdatePointErrors(SparseModel* model) {
@@ -66,25 +91,24 @@ std::optional<BundleAdjustment> AdjustBundleInFull(const BundleAdjustmentOptions
   if (bundle.NumObservations() == 0) return std::nullopt;
   BundleValues values = ReadValues(bundle, freedom, model);
   BundleMinimizer minimizer(bundle, options.num_threads);
-  Progress progress("Bundle adjustment, steps at most", options.max_num_iterations);
-  Minimum minimum = minimizer.Run(options.loss, options.max_num_iterations,
-                                  [&](int step) { progress.Update(step); }, &values);
+  Progress progress("Bundle adjustment, steps at most", 2 * options.max_num_iterations);
   BundleAdjustment adjustment;
-  adjustment.num_iterations = minimum.num_iterations;
-  adjustment.error_sigma = ErrorSigma(bundle, values);
-  if (options.last_loss) {
-    const RobustLoss last = {*options.last_loss,
-                             options.last_scale * std::max(adjustment.error_sigma, 1e-3)};
-    minimum = minimizer.Run(last, options.max_num_iterations,
-                            [&](int step) { progress.Update(step); }, &values);
+  const auto minimize = [&](const RobustLoss& loss) {
+    const int before = adjustment.num_iterations;
+    const Minimum minimum = minimizer.Run(
+        loss, options.max_num_iterations, [&](int step) { progress.Update(before + step); },
+        &values);
+    adjustment.cost = minimum.cost;
+    adjustment.is_converged = minimum.is_converged;
     adjustment.num_iterations += minimum.num_iterations;
+  };
+  minimize(options.loss);
+  if (options.last_loss) {
+    const double sigma = std::max(ResidualSigma(bundle, values), kMinResidualSigma);
+    minimize({*options.last_loss, options.last_scale * sigma});
   }
-  adjustment.cost = minimum.cost;
-  adjustment.is_converged = minimum.is_converged;
-  for (size_t c = 0; c < bundle.lenses.size(); ++c) {
-    const LensParams sigmas = minimizer.LensSigmas(c, adjustment.error_sigma);
-    adjustment.lens_sigmas[bundle.camera_id[c]].assign(sigmas.begin(), sigmas.end());
-  }
+  adjustment.error_sigma = ErrorsToResiduals(bundle) * ResidualSigma(bundle, values);
+  adjustment.lens_sigmas = LensSigmas(bundle, minimizer, adjustment.error_sigma);
   adjustment.model = model;
   WriteValues(bundle, values, &adjustment.model);
   UpdatePointErrors(&adjustment.model);

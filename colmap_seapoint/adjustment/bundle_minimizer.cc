@@ -12,13 +12,22 @@ namespace {
 constexpr double kFirstDamping = 1e-4;
 // It is what holds the model's frame. The bend of a thousand pictures is weaker than 1e-8 of the
 // diagonal; the factors' rounding is some 1e-14.
-constexpr double kMinDamping = 1e-12;
+constexpr double kMinDamping = 1e-11;
 constexpr double kMaxDamping = 1e8;
 // Below it the damping does not hide what step is left.
 constexpr double kDampingOfConvergence = 1e-10;
-constexpr double kMaxStepInSigmas = 1e-3;
-static const int kPointSteps = getenv("PS") ? atoi(getenv("PS")) : 1;
+constexpr double kMaxStepInSigmas = 0.01;
+constexpr double kMaxDecrement = kMaxStepInSigmas * kMaxStepInSigmas;
+// Of each point alone after a step of all. A long survey bends back only along a curve; points that
+// follow the poses make the step on that curve three times as long.
+constexpr int kPointSteps = 2;
 constexpr double kRounding = 1e-13;  // of the cost, relative
+
+// After a step that gained this share of what the linear problem promised (Nielsen's rule).
+double DampingFactor(double share) {
+  const double surplus = 2 * share - 1;
+  return std::max(0.1, 1 - surplus * surplus * surplus);
+}
 
 }  // namespace
 
@@ -33,39 +42,35 @@ Minimum BundleMinimizer::Run(const RobustLoss& loss, int max_num_iterations,
                              const std::function<void(int)>& on_step, BundleValues* values) {
   loss_scale_ = loss.scale;
   damping_ = kFirstDamping;
-  double growth = 2;
-  Minimum minimum;
+  double growth = 2, lowest_damping = kMinDamping;
   LinearizeAt(loss, *values);
-  while (minimum.num_iterations < max_num_iterations && damping_ < kMaxDamping) {
+  Minimum minimum;
+  minimum.cost = linearization_.cost + PriorCost(*values);
+  while (!minimum.is_converged && minimum.num_iterations < max_num_iterations &&
+         damping_ < kMaxDamping) {
     on_step(minimum.num_iterations++);
-    minimum.cost = linearization_.cost + PriorCost(*values);
     if (!SolveDamped()) {
-      damping_ *= 10;
+      lowest_damping = damping_ *= 10;
       continue;
     }
-    const double decrement = -step_.dot(system_.gradient);
     Trial trial = Try(loss, *values);
     const double predicted = PredictedDecrease();
     const double gain = minimum.cost - trial.cost;
-    const bool is_better = gain > 0;
-    if (getenv("BA_LOG")) fprintf(stderr, "%d cost %.10g trial %.10g pred %.4g pt %.4g dec %.4g damp %.3g\n", minimum.num_iterations, minimum.cost, trial.cost, predicted, linearization_.point_decrease, decrement, damping_);
-    if (is_better) *values = std::move(trial.values);
-    minimum.is_converged =
-        damping_ <= kDampingOfConvergence &&
-        (decrement <= kMaxStepInSigmas * kMaxStepInSigmas || predicted < kRounding * minimum.cost);
-    if (minimum.is_converged) {
-      if (is_better) minimum.cost = trial.cost;
-      break;
-    }
-    if (is_better) {
-      const double ratio = 2 * gain / predicted - 1;
-      damping_ = std::max(kMinDamping, damping_ * std::max(0.1, 1 - ratio * ratio * ratio));
+    const bool is_small =
+        -step_.dot(system_.gradient) <= kMaxDecrement || predicted < kRounding * minimum.cost;
+    minimum.is_converged = is_small && damping_ <= std::max(kDampingOfConvergence, lowest_damping);
+    if (gain > 0) {
+      *values = std::move(trial.values);
+      minimum.cost = trial.cost;
+      damping_ *= DampingFactor(gain / predicted);
       growth = 2;
-      LinearizeAt(loss, *values);
+      if (!minimum.is_converged) LinearizeAt(loss, *values);
     } else {
       damping_ *= growth;
       growth *= 2;
     }
+    // A small step may be one that the damping hides.
+    damping_ = is_small ? lowest_damping : std::max(damping_, lowest_damping);
   }
   return minimum;
 }
@@ -81,35 +86,39 @@ bool BundleMinimizer::SolveDamped() {
   return step_.allFinite();
 }
 
-// A point keeps its place where the step of the linear problem would only make it worse: one that
-// has hardly any parallax would else spoil the step of all.
+// By the step that belongs to that of the poses, and then alone. A point keeps its place where that
+// step would only make it worse: one that has hardly any parallax would else spoil the step of all.
+PlacedPoint BundleMinimizer::MovePoint(const RobustLoss& loss, const BundleValues& before,
+                                       const BundleValues& after, size_t point) const {
+  const Eigen::Vector3d& was = before.points[point];
+  const Eigen::Vector3d step = PointStep(bundle_, linearization_, system_, step_, point);
+  PlacedPoint best = PlacePoint(bundle_, after, loss, point, was + step);
+  if (best.cost > linearization_.point_costs[point]) {
+    const PlacedPoint there = PlacePoint(bundle_, after, loss, point, was);
+    if (there.cost < best.cost) best = there;
+  }
+  return RefinePoint(bundle_, after, loss, point, kPointSteps, best);
+}
+
 BundleMinimizer::Trial BundleMinimizer::Try(const RobustLoss& loss,
                                             const BundleValues& values) const {
   Trial trial = {MovePosesAndLenses(bundle_, system_, step_, values), 0};
-  trial.cost = PriorCost(trial.values) +
-               SumOverPoints(bundle_, num_threads_, [&](size_t begin, size_t end) {
-                 double sum = 0;
-                 for (size_t p = begin; p < end; ++p) {
-                   const Eigen::Vector3d moved =
-                       values.points[p] + PointStep(bundle_, linearization_, system_, step_, p);
-                   PlacedPoint best = PlacePoint(bundle_, trial.values, loss, p, moved);
-                   if (best.cost > linearization_.point_costs[p]) {
-                     const PlacedPoint there =
-                         PlacePoint(bundle_, trial.values, loss, p, values.points[p]);
-                     if (there.cost < best.cost) best = there;
-                   }
-                   best = RefinePoint(bundle_, trial.values, loss, p, kPointSteps, best);
-                   trial.values.points[p] = best.xyz;
-                   sum += best.cost;
-                 }
-                 return sum;
-               });
+  const auto move_points = [&](size_t begin, size_t end) {
+    double sum = 0;
+    for (size_t p = begin; p < end; ++p) {
+      const PlacedPoint best = MovePoint(loss, values, trial.values, p);
+      trial.values.points[p] = best.xyz;
+      sum += best.cost;
+    }
+    return sum;
+  };
+  trial.cost = PriorCost(trial.values) + SumOverPoints(bundle_, num_threads_, move_points);
   return trial;
 }
 
 double BundleMinimizer::PredictedDecrease() const {
-  const double of_step = step_.dot(damping_ * system_.diagonal.cwiseProduct(step_)) -
-                         step_.dot(system_.gradient);
+  const double of_step =
+      step_.dot(damping_ * system_.diagonal.cwiseProduct(step_)) - step_.dot(system_.gradient);
   return linearization_.point_decrease + 0.5 * of_step;
 }
 

@@ -21,14 +21,14 @@ class BundleMinimizer {
   // From `values` on, at most so many steps; on_step(number) is called before each.
   //
   // It has converged when the step that is left would not move any combination of poses and lenses
-  // by more than a thousandth of its standard deviation (were the noise as large as the loss's
+  // by more than a hundredth of its standard deviation (were the noise as large as the loss's
   // scale). A bound on how much the cost falls would end too early: where focal length, distortion
   // and the bend of the ground trade places, the cost hardly changes over many pixels.
-  Minimum Run(const RobustLoss& loss, int max_num_iterations, const std::function<void(int)>& on_step,
-              BundleValues* values);
+  Minimum Run(const RobustLoss& loss, int max_num_iterations,
+              const std::function<void(int)>& on_step, BundleValues* values);
 
   // After Run: the standard deviation of each parameter of a lens, all others being free, were the
-  // noise one pixel's `sigma`; 0 for what is held.
+  // errors of one coordinate `sigma` pixels; 0 for what is held.
   LensParams LensSigmas(size_t lens, double sigma) const;
 
  private:
@@ -38,6 +38,8 @@ class BundleMinimizer {
   };
 
   bool SolveDamped();
+  PlacedPoint MovePoint(const RobustLoss& loss, const BundleValues& before,
+                        const BundleValues& after, size_t point) const;
   Trial Try(const RobustLoss& loss, const BundleValues& values) const;
   double PredictedDecrease() const;
   double PriorCost(const BundleValues& values) const;

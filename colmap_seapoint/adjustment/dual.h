@@ -11,7 +11,8 @@ template <int N>
 struct Dual {
   using Derivatives = Eigen::Matrix<double, N, 1>;
 
-  Dual(double constant = 0) : value(constant), by(Derivatives::Zero()) {}  // NOLINT: a number is one
+  Dual(double constant = 0)
+      : value(constant), by(Derivatives::Zero()) {}  // NOLINT: a number is one
   Dual(double v, const Derivatives& d) : value(v), by(d) {}
 
   static Dual Variable(double v, int idx) { return {v, Derivatives::Unit(idx)}; }

@@ -11,9 +11,8 @@ namespace {
 
 constexpr size_t kPointsOfBlock = 512;
 constexpr double kErrorBehindCamera = 1000;  // pixels
-// Of a point's own equations, relative to their diagonal: keeps a point without parallax solvable,
-// and is far below what the weakest mode of a thousand pictures would notice.
-constexpr double kPointDamping = 1e-12;
+// Relative to the diagonal: keeps the first factors of a point with hardly any parallax real.
+constexpr double kPointDamping = 1e-14;
 
 bool IsBehind(const Eigen::Vector3d& in_cam) { return !(in_cam.z() > 0); }
 
@@ -29,44 +28,68 @@ Eigen::Matrix3d CrossMatrix(const Eigen::Vector3d& y) {
   return cross;
 }
 
-// Of a symmetric positive definite matrix; zero where it is not.
-Eigen::Matrix3d DampedInverse(Eigen::Matrix3d equations) {
-  equations.diagonal() *= 1 + kPointDamping;
-  const Eigen::LLT<Eigen::Matrix3d> factors(equations);
+// F with F^T (normal) F = 1, upper triangular; zero where there is none.
+Eigen::Matrix3d OrthonormalFrame(const Eigen::Matrix3d& normal) {
+  const Eigen::LLT<Eigen::Matrix3d> factors(normal);
   if (factors.info() != Eigen::Success) return Eigen::Matrix3d::Zero();
-  const Eigen::Matrix3d inverse = factors.solve(Eigen::Matrix3d::Identity());
-  if (!inverse.allFinite()) return Eigen::Matrix3d::Zero();
-  return 0.5 * (inverse + inverse.transpose());
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
+  factors.matrixU().solveInPlace(frame);
+  if (!frame.allFinite()) return Eigen::Matrix3d::Zero();
+  return frame;
 }
 
-// The point's own equations; returns twice its decrease.
+Eigen::Matrix3d Damped(Eigen::Matrix3d normal) {
+  normal.diagonal() *= 1 + kPointDamping;
+  return normal;
+}
+
+// Turns the rows' derivatives by the point (in `basis`) into an orthonormal basis: twice, since the
+// normal equations square what is ill-conditioned, and the second time mends that.
+Eigen::Matrix3d Orthonormalize(ObservationRow* begin, ObservationRow* end) {
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
+  for (int pass = 0; pass < 2; ++pass) {
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    for (const ObservationRow* row = begin; row != end; ++row) {
+      normal.noalias() += row->basis.transpose() * row->basis;
+    }
+    const Eigen::Matrix3d further = OrthonormalFrame(pass == 0 ? Damped(normal) : normal);
+    for (ObservationRow* row = begin; row != end; ++row) row->basis *= further;
+    frame *= further;
+  }
+  return frame;
+}
+
+// Returns the squared length of the residuals' part that the point can explain.
 double LinearizePoint(const Bundle& bundle, const BundleValues& values, const RobustLoss& loss,
                       size_t point, Linearization* out) {
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-  double cost = 0;
   const uint32_t first_share = bundle.share_begin[point];
-  const uint32_t last_share = bundle.share_begin[point + 1];
-  for (uint32_t s = first_share; s < last_share; ++s) out->Share(bundle, s).setZero();
-  for (uint32_t k = bundle.point_begin[point]; k < bundle.point_begin[point + 1]; ++k) {
-    const ObservationEquations equations = EquationsOf(bundle, values, loss, k);
+  const uint32_t begin = bundle.point_begin[point], end = bundle.point_begin[point + 1];
+  for (uint32_t s = first_share; s < bundle.share_begin[point + 1]; ++s) {
+    out->Share(bundle, s).setZero();
+  }
+  std::vector<ObservationEquations> equations(end - begin);
+  out->point_costs[point] = 0;
+  for (uint32_t k = begin; k < end; ++k) {
     ObservationRow& row = out->rows[k];
-    row.by_pose = equations.by_pose.cast<float>();
-    row.by_point = equations.by_point.cast<float>();
-    row.residual = equations.residual.cast<float>();
-    const Eigen::Matrix<double, 2, 3> by_point = row.by_point.cast<double>();
-    normal.noalias() += by_point.transpose() * by_point;
-    gradient.noalias() += by_point.transpose() * row.residual.cast<double>();
+    ObservationEquations& full = equations[k - begin];
+    full = EquationsOf(bundle, values, loss, k);
+    row.by_pose = full.by_pose.cast<float>();
+    row.residual = full.residual.cast<float>();
+    row.basis = full.by_point;
+    out->point_costs[point] += 0.5 * full.cost;
+  }
+  out->point_frames[point] = Orthonormalize(&out->rows[begin], &out->rows[begin] + (end - begin));
+  Eigen::Vector3d residual = Eigen::Vector3d::Zero();
+  for (uint32_t k = begin; k < end; ++k) {
+    const ObservationRow& row = out->rows[k];
+    residual.noalias() += row.basis.transpose() * row.residual.cast<double>();
     const uint32_t lens = bundle.lens_of_picture[bundle.picture_of[k]];
     uint32_t share = first_share;
     while (bundle.share_lens[share] != lens) ++share;
-    out->Share(bundle, share).noalias() += by_point.transpose() * equations.by_lens;
-    cost += 0.5 * equations.cost;
+    out->Share(bundle, share) += row.basis.transpose().lazyProduct(equations[k - begin].by_lens);
   }
-  out->point_inverses[point] = DampedInverse(normal);
-  out->point_gains[point] = out->point_inverses[point] * gradient;
-  out->point_costs[point] = cost;
-  return gradient.dot(out->point_gains[point]);
+  out->point_residuals[point] = residual;
+  return residual.squaredNorm();
 }
 
 }  // namespace
@@ -104,8 +127,8 @@ ObservationEquations EquationsOf(const Bundle& bundle, const BundleValues& value
 Linearization MakeLinearization(const Bundle& bundle) {
   Linearization out;
   out.rows.resize(bundle.NumObservations());
-  out.point_inverses.resize(bundle.NumPoints());
-  out.point_gains.resize(bundle.NumPoints());
+  out.point_frames.resize(bundle.NumPoints());
+  out.point_residuals.resize(bundle.NumPoints());
   out.point_costs.resize(bundle.NumPoints());
   size_t size = 0;
   for (uint32_t lens : bundle.share_lens) {
@@ -166,8 +189,9 @@ PlacedPoint RefinePoint(const Bundle& bundle, const BundleValues& values, const 
       normal.noalias() += weight * by_point.transpose() * by_point;
       gradient.noalias() += weight * by_point.transpose() * error;
     }
+    const Eigen::Matrix3d frame = OrthonormalFrame(Damped(normal));
     const PlacedPoint moved = PlacePoint(bundle, values, loss, point,
-                                         placed.xyz - DampedInverse(normal) * gradient);
+                                         placed.xyz - frame * (frame.transpose() * gradient));
     if (!(moved.cost < placed.cost)) break;
     placed = moved;
   }

@@ -28,32 +28,36 @@ struct ObservationEquations {
 ObservationEquations EquationsOf(const Bundle& bundle, const BundleValues& values,
                                  const RobustLoss& loss, size_t observation);
 
-// What of the above is kept, 80 bytes an observation. The normal equations of these rounded
+// What of the above is kept, 104 bytes an observation. The normal equations of the rounded
 // derivatives are formed with double precision: they are exactly those of a problem that differs
 // by a ten-millionth, and as positive as any.
 struct ObservationRow {
   Eigen::Matrix<float, 2, 6> by_pose;
-  Eigen::Matrix<float, 2, 3> by_point;
   Eigen::Vector2f residual;
+  // The observation's part of an orthonormal basis of what the point can explain of its
+  // observations' residuals: by_point * PointFrame. With normal equations and their inverse
+  // instead, a point of little parallax would leave rounding behind that is stronger than the bend
+  // of a long survey.
+  Eigen::Matrix<double, 2, 3> basis;
 };
 
 struct Linearization {
   std::vector<ObservationRow> rows;
-  // Of each point: the inverse of its own normal equations (held where they have none), and that
-  // times its gradient: minus the step that it would make alone.
-  std::vector<Eigen::Matrix3d> point_inverses;
-  std::vector<Eigen::Vector3d> point_gains;
+  // Of each point: what makes an orthonormal basis of its derivatives (upper triangle; zero: the
+  // point is held), and the residuals' coordinates in that basis.
+  std::vector<Eigen::Matrix3d> point_frames;
+  std::vector<Eigen::Vector3d> point_residuals;
   std::vector<double> point_costs;
   // Of each share (Bundle::share_lens): the sum over the point's observations through that lens of
-  // by_point^T by_lens, 3 x num_free, columns one after another.
+  // basis^T by_lens, 3 x num_free, columns one after another.
   std::vector<size_t> share_place;  // in lens_shares
   std::vector<double> lens_shares;
   double cost = 0;            // half the sum of RobustLoss::Cost
   double point_decrease = 0;  // of it, when the points alone are moved
 
   auto Share(const Bundle& bundle, size_t share) const {
-    return Eigen::Map<const Eigen::Matrix3Xd>(
-        &lens_shares[share_place[share]], 3, bundle.lenses[bundle.share_lens[share]].num_free);
+    return Eigen::Map<const Eigen::Matrix3Xd>(&lens_shares[share_place[share]], 3,
+                                              bundle.lenses[bundle.share_lens[share]].num_free);
   }
   auto Share(const Bundle& bundle, size_t share) {
     return Eigen::Map<Eigen::Matrix3Xd>(&lens_shares[share_place[share]], 3,

@@ -71,18 +71,15 @@ class RowSum {
     const uint32_t point = bundle_.point_of[observation];
     const ObservationRow& row = linearization_.rows[observation];
     const Eigen::Matrix<double, 2, 6> by_pose = row.by_pose.cast<double>();
-    const Eigen::Matrix<double, 2, 3> by_point = row.by_point.cast<double>();
     const Eigen::Vector2d residual =
-        row.residual.cast<double>() - by_point * linearization_.point_gains[point];
+        row.residual.cast<double>() - row.basis * linearization_.point_residuals[point];
     gradient_.noalias() += by_pose.transpose() * residual;
     diagonal_ += by_pose.colwise().squaredNorm().transpose();
     part_.gradient.noalias() += by_lens.transpose() * residual;
     part_.diagonal += by_lens.colwise().squaredNorm().transpose();
     own_.noalias() += by_pose.transpose() * by_pose;
-    const Eigen::Matrix<double, 2, 3> through_point =
-        by_point * linearization_.point_inverses[point];
-    AddPictures(point, by_pose, through_point);
-    AddLenses(point, by_pose, through_point, by_lens);
+    AddPictures(point, by_pose, row.basis);
+    AddLenses(point, by_pose, row.basis, by_lens);
   }
 
   // Puts the sums where they belong, except for the lenses' own equations, which it returns.
@@ -109,11 +106,11 @@ class RowSum {
 
  private:
   void AddPictures(uint32_t point, const Eigen::Matrix<double, 2, 6>& by_pose,
-                   const Eigen::Matrix<double, 2, 3>& through_point) {
+                   const Eigen::Matrix<double, 2, 3>& basis) {
     for (uint32_t k = bundle_.point_begin[point]; k < bundle_.point_begin[point + 1]; ++k) {
       if (bundle_.picture_of[k] > picture_) break;  // they ascend
       const ObservationRow& other = linearization_.rows[k];
-      const Eigen::Matrix2d both = through_point * other.by_point.cast<double>().transpose();
+      const Eigen::Matrix2d both = basis * other.basis.transpose();
       const Eigen::Matrix<double, 2, 6> right = both * other.by_pose.cast<double>();
       system_->matrix.blocks[place_of_picture_[bundle_.picture_of[k]]].noalias() -=
           by_pose.transpose().lazyProduct(right);
@@ -121,14 +118,14 @@ class RowSum {
   }
 
   void AddLenses(uint32_t point, const Eigen::Matrix<double, 2, 6>& by_pose,
-                 const Eigen::Matrix<double, 2, 3>& through_point, const RowOfTwo& by_lens) {
+                 const Eigen::Matrix<double, 2, 3>& basis, const RowOfTwo& by_lens) {
     size_t of_part = 0;
     Eigen::Index column = 0;
     for (uint32_t s = bundle_.share_begin[point]; s < bundle_.share_begin[point + 1]; ++s) {
       while (part_.lenses[of_part] != bundle_.share_lens[s]) {
         column += bundle_.lenses[part_.lenses[of_part++]].num_free;
       }
-      RowOfTwo reduced = -through_point.lazyProduct(linearization_.Share(bundle_, s));
+      RowOfTwo reduced = -basis.lazyProduct(linearization_.Share(bundle_, s));
       if (bundle_.share_lens[s] == own_lens_) reduced += by_lens;
       border_.middleRows(column, reduced.cols()) += reduced.transpose().lazyProduct(by_pose);
       part_.equations.middleCols(column, reduced.cols()) +=
@@ -304,19 +301,19 @@ BundleValues MovePosesAndLenses(const Bundle& bundle, const ReducedSystem& syste
 
 Eigen::Vector3d PointStep(const Bundle& bundle, const Linearization& linearization,
                           const ReducedSystem& system, const Eigen::VectorXd& step, size_t point) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Vector3d sum = linearization.point_residuals[point];
   for (uint32_t k = bundle.point_begin[point]; k < bundle.point_begin[point + 1]; ++k) {
     const ObservationRow& row = linearization.rows[k];
     const auto first = static_cast<Eigen::Index>(kBlockSize * bundle.picture_of[k]);
     const Eigen::Vector2d shift = row.by_pose.cast<double>() * step.segment<kBlockSize>(first);
-    sum.noalias() += row.by_point.cast<double>().transpose() * shift;
+    sum.noalias() += row.basis.transpose() * shift;
   }
   for (uint32_t s = bundle.share_begin[point]; s < bundle.share_begin[point + 1]; ++s) {
     const size_t lens = bundle.share_lens[s];
     const auto share = linearization.Share(bundle, s);
     sum += share.lazyProduct(step.segment(system.LensIndex(lens), share.cols()));
   }
-  return -(linearization.point_gains[point] + linearization.point_inverses[point] * sum);
+  return -(linearization.point_frames[point] * sum);
 }
 
 }  // namespace colmap_seapoint

@@ -15,9 +15,9 @@
 namespace colmap_seapoint {
 
 struct ReducedSystem {
-  BlockMatrix matrix;         // rows: pictures, then each lens's blocks
-  Eigen::VectorXd gradient;   // minus the right side
-  Eigen::VectorXd diagonal;   // of the equations before the elimination: what damping goes by
+  BlockMatrix matrix;              // rows: pictures, then each lens's blocks
+  Eigen::VectorXd gradient;        // minus the right side
+  Eigen::VectorXd diagonal;        // of the equations before the elimination: what damping goes by
   std::vector<uint32_t> lens_row;  // the first row of each lens, and the end
 
   Eigen::Index LensIndex(size_t lens) const {
