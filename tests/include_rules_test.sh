@@ -29,8 +29,9 @@ densify/maps                    colmap_seapoint/base densify/match densify/cloud
 densify                         colmap_seapoint/base densify/*
 colmap_seapoint/georeference    colmap_seapoint/base colmap_seapoint/io/files
 colmap_seapoint/compare         colmap_seapoint/base colmap_seapoint/io/cloud
-colmap_seapoint/adjustment      colmap_seapoint/base
-colmap_seapoint/mapping         colmap_seapoint/base colmap_seapoint/adjustment colmap_seapoint/io/files colmap_seapoint/io/colmap
+colmap_seapoint/adjustment/equations colmap_seapoint/base
+colmap_seapoint/adjustment      colmap_seapoint/base colmap_seapoint/adjustment/equations
+colmap_seapoint/mapping         colmap_seapoint/base colmap_seapoint/adjustment colmap_seapoint/adjustment/equations colmap_seapoint/io/files colmap_seapoint/io/colmap
 colmap_seapoint/pictures        colmap_seapoint/base colmap_seapoint/io/* feature feature/* densify densify/*
 colmap_seapoint/pairing         colmap_seapoint/base colmap_seapoint/io/* feature feature/*
 colmap_seapoint/report          colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/georeference densify densify/*

@@ -1,7 +1,9 @@
 #include "colmap_seapoint/adjustment/bundle_adjustment.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "colmap_seapoint/adjustment/bundle_minimizer.h"
 #include "colmap_seapoint/base/median.h"
@@ -65,6 +67,26 @@ std::map<uint32_t, std::vector<double>> LensSigmas(const Bundle& bundle,
   return sigmas;
 }
 
+// Points that only one picture sees are put on its ray again, as far from it as they were.
+void CarryLonePoints(const SparseModel& before, const std::vector<uint64_t>& adjusted_ids,
+                     SparseModel* after) {
+  for (size_t i = 0; i < after->images.size(); ++i) {
+    const PosedImage& image = after->images[i];
+    const auto camera = after->cameras.find(image.camera_id);
+    if (camera == after->cameras.end()) continue;
+    for (size_t k = 0; k < image.points2D.size(); ++k) {
+      const auto point = after->points3D.find(image.point3D_ids[k]);
+      if (point == after->points3D.end()) continue;
+      if (std::binary_search(adjusted_ids.begin(), adjusted_ids.end(), point->first)) continue;
+      const Eigen::Vector3d& was = before.points3D.at(point->first).xyz;
+      const double depth = (before.images[i].cam_from_world * was).z();
+      const auto ray = camera->second.CamFromImg(image.points2D[k]);
+      if (!ray || !(depth > 0)) continue;
+      point->second.xyz = image.cam_from_world.Inverse() * (depth * ray->homogeneous());
+    }
+  }
+}
+
 void UpdatePointErrors(SparseModel* model) {
   std::map<uint64_t, double> sums;
   for (const PosedImage& image : model->images) {
@@ -111,6 +133,7 @@ std::optional<BundleAdjustment> AdjustBundleInFull(const BundleAdjustmentOptions
   adjustment.lens_sigmas = LensSigmas(bundle, minimizer, adjustment.error_sigma);
   adjustment.model = model;
   WriteValues(bundle, values, &adjustment.model);
+  CarryLonePoints(model, bundle.point_id, &adjustment.model);
   UpdatePointErrors(&adjustment.model);
   return adjustment;
 }

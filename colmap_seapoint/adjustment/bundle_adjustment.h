@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "colmap_seapoint/adjustment/bundle.h"
-#include "colmap_seapoint/adjustment/robust_loss.h"
+#include "colmap_seapoint/adjustment/equations/bundle.h"
+#include "colmap_seapoint/adjustment/equations/robust_loss.h"
 #include "colmap_seapoint/base/sparse_model.h"
 
 namespace colmap_seapoint {

@@ -44,6 +44,7 @@ Minimum BundleMinimizer::Run(const RobustLoss& loss, int max_num_iterations,
   damping_ = kFirstDamping;
   double growth = 2, lowest_damping = kMinDamping;
   LinearizeAt(loss, *values);
+  bool was_small = false;
   Minimum minimum;
   minimum.cost = linearization_.cost + PriorCost(*values);
   while (!minimum.is_converged && minimum.num_iterations < max_num_iterations &&
@@ -58,7 +59,8 @@ Minimum BundleMinimizer::Run(const RobustLoss& loss, int max_num_iterations,
     const double gain = minimum.cost - trial.cost;
     const bool is_small =
         -step_.dot(system_.gradient) <= kMaxDecrement || predicted < kRounding * minimum.cost;
-    minimum.is_converged = is_small && damping_ <= std::max(kDampingOfConvergence, lowest_damping);
+    minimum.is_converged =
+        is_small && was_small && damping_ <= std::max(kDampingOfConvergence, lowest_damping);
     if (gain > 0) {
       *values = std::move(trial.values);
       minimum.cost = trial.cost;
@@ -69,6 +71,7 @@ Minimum BundleMinimizer::Run(const RobustLoss& loss, int max_num_iterations,
       damping_ *= growth;
       growth *= 2;
     }
+    was_small = is_small;
     // A small step may be one that the damping hides.
     damping_ = is_small ? lowest_damping : std::max(damping_, lowest_damping);
   }

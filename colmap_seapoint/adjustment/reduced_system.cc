@@ -51,11 +51,10 @@ class RowSum {
   RowSum(const Bundle& bundle, const Linearization& linearization, uint32_t picture,
          ReducedSystem* system)
       : bundle_(bundle), linearization_(linearization), picture_(picture), system_(system) {
-    own_lens_ = bundle.lens_of_picture[picture];
     part_.lenses = NeighborsOf(bundle, picture).lenses;
     int size = 0;
     for (uint32_t lens : part_.lenses) size += bundle.lenses[lens].num_free;
-    const int own_size = bundle.lenses[own_lens_].num_free;
+    const int own_size = bundle.lenses[OwnLens()].num_free;
     part_.equations = Eigen::MatrixXd::Zero(own_size, size);
     part_.gradient = part_.diagonal = Eigen::VectorXd::Zero(own_size);
     border_ = Eigen::MatrixXd::Zero(size, kBlockSize);
@@ -105,6 +104,8 @@ class RowSum {
   }
 
  private:
+  uint32_t OwnLens() const { return bundle_.lens_of_picture[picture_]; }
+
   void AddPictures(uint32_t point, const Eigen::Matrix<double, 2, 6>& by_pose,
                    const Eigen::Matrix<double, 2, 3>& basis) {
     for (uint32_t k = bundle_.point_begin[point]; k < bundle_.point_begin[point + 1]; ++k) {
@@ -126,7 +127,7 @@ class RowSum {
         column += bundle_.lenses[part_.lenses[of_part++]].num_free;
       }
       RowOfTwo reduced = -basis.lazyProduct(linearization_.Share(bundle_, s));
-      if (bundle_.share_lens[s] == own_lens_) reduced += by_lens;
+      if (bundle_.share_lens[s] == OwnLens()) reduced += by_lens;
       border_.middleRows(column, reduced.cols()) += reduced.transpose().lazyProduct(by_pose);
       part_.equations.middleCols(column, reduced.cols()) +=
           by_lens.transpose().lazyProduct(reduced);
@@ -136,7 +137,6 @@ class RowSum {
   const Bundle& bundle_;
   const Linearization& linearization_;
   const uint32_t picture_;
-  uint32_t own_lens_ = 0;
   ReducedSystem* system_;
   LensPart part_;
   Eigen::MatrixXd border_;  // rows: the free values of all these lenses; columns: the pose

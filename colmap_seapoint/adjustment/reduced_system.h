@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "colmap_seapoint/adjustment/block_cholesky.h"
-#include "colmap_seapoint/adjustment/linearization.h"
+#include "colmap_seapoint/adjustment/equations/linearization.h"
 
 namespace colmap_seapoint {
 

@@ -7,8 +7,8 @@
 #include <functional>
 #include <vector>
 
-#include "colmap_seapoint/adjustment/bundle.h"
-#include "colmap_seapoint/adjustment/robust_loss.h"
+#include "colmap_seapoint/adjustment/equations/bundle.h"
+#include "colmap_seapoint/adjustment/equations/robust_loss.h"
 
 namespace colmap_seapoint {
 

@@ -1,4 +1,4 @@
-#include "colmap_seapoint/adjustment/linearization.h"
+#include "colmap_seapoint/adjustment/equations/linearization.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

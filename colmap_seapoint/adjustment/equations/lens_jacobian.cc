@@ -1,8 +1,8 @@
-#include "colmap_seapoint/adjustment/lens_jacobian.h"
+#include "colmap_seapoint/adjustment/equations/lens_jacobian.h"
 
 #include <algorithm>
 
-#include "colmap_seapoint/adjustment/dual.h"
+#include "colmap_seapoint/adjustment/equations/dual.h"
 #include "colmap_seapoint/base/camera_projection.h"
 
 namespace colmap_seapoint {

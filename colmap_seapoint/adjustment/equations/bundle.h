@@ -8,7 +8,7 @@
 #include <map>
 #include <vector>
 
-#include "colmap_seapoint/adjustment/lens_jacobian.h"
+#include "colmap_seapoint/adjustment/equations/lens_jacobian.h"
 #include "colmap_seapoint/base/sparse_model.h"
 
 namespace colmap_seapoint {

@@ -1,4 +1,4 @@
-#include "colmap_seapoint/adjustment/bundle.h"
+#include "colmap_seapoint/adjustment/equations/bundle.h"
 
 #include <algorithm>
 #include <iterator>

@@ -1,4 +1,4 @@
-#include "colmap_seapoint/adjustment/lens_jacobian.h"
+#include "colmap_seapoint/adjustment/equations/lens_jacobian.h"
 
 #include <gtest/gtest.h>
 
