@@ -31,7 +31,9 @@ densify                         colmap_seapoint/base densify/*
 colmap_seapoint/georeference    colmap_seapoint/base colmap_seapoint/io/files
 colmap_seapoint/compare         colmap_seapoint/base colmap_seapoint/io/cloud
 colmap_seapoint/tracks          colmap_seapoint/base colmap_seapoint/io/colmap
-colmap_seapoint/mapping         colmap_seapoint/tracks colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/colmap
+colmap_seapoint/adjustment/equations colmap_seapoint/base
+colmap_seapoint/adjustment      colmap_seapoint/base colmap_seapoint/adjustment/equations
+colmap_seapoint/mapping         colmap_seapoint/base colmap_seapoint/tracks colmap_seapoint/adjustment colmap_seapoint/adjustment/equations colmap_seapoint/remeasuring colmap_seapoint/io/files colmap_seapoint/io/colmap colmap_seapoint/io/image
 colmap_seapoint/pictures        colmap_seapoint/base colmap_seapoint/io/* feature feature/* densify densify/*
 colmap_seapoint/pairing         colmap_seapoint/base colmap_seapoint/io/* feature feature/*
 colmap_seapoint/remeasuring     colmap_seapoint/base feature/remeasuring
@@ -70,8 +72,8 @@ only_in() {  # WHAT REGEX ALLOWED_PATHS_REGEX
     grep -vE "^($3)")
   [ -z "$found" ] || { echo "$1:"; echo "$found"; failed=1; }
 }
-only_in "Ceres solves in mapping, georeference and two-view verification only" '#include <ceres/' \
-  'colmap_seapoint/(mapping|georeference)/|feature/matching/'
+only_in "Ceres solves in georeference and two-view verification only" '#include <ceres/' \
+  'colmap_seapoint/georeference/|feature/matching/'
 only_in "children are started by mapping only" 'RunSubprocess\(|io/files/subprocess\.h' \
   'colmap_seapoint/(mapping|io/files)/'
 only_in "SQLite is io's" '#include <sqlite3\.h>|io/files/sqlite\.h' 'colmap_seapoint/io/(files|colmap)/'

@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "colmap_seapoint/adjustment/bundle_adjustment.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
-#include "colmap_seapoint/mapping/bundle_adjustment.h"
 #include "colmap_seapoint/mapping/retriangulate.h"
 
 namespace colmap_seapoint {
@@ -65,11 +65,12 @@ struct Adjusted {
   std::string fault;  // empty: the model is sound
 };
 
-Adjusted AdjustSoundly(const SparseModel& before, bool frees_principal_point,
+Adjusted AdjustSoundly(const SparseModel& before, const AdjustmentJob& job,
                        double max_focal_ratio) {
   if (before.images.size() < kMinPictures) return {{}, "too few pictures"};
   BundleAdjustmentOptions options;
-  options.refine_principal_point = frees_principal_point;
+  options.refine_principal_point = job.frees_principal_point;
+  options.num_threads = job.num_threads;
   std::optional<SparseModel> after = AdjustBundle(options, before);
   if (!after) return {{}, "the adjustment failed"};
   const std::string fault = Fault(before, *after, max_focal_ratio);
@@ -111,7 +112,7 @@ LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
                           const fs::path& folder) {
   const SparseModel before = ReadSparseModel(folder);
   LensAdjustment result;
-  const Adjusted first = AdjustSoundly(before, job.frees_principal_point, kMaxFocalRatio);
+  const Adjusted first = AdjustSoundly(before, job, kMaxFocalRatio);
   const bool is_sound = first.fault.empty();
   result.distortion_is_sound = is_sound || !job.frees_distortion;
   result.model = is_sound ? WrittenAndRead(folder, first.model) : before;
@@ -124,7 +125,7 @@ LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
 
   Adjusted second;
   if (is_sound) {
-    second = AdjustSoundly(result.model, job.frees_principal_point, kMaxFocalRatioOnceMore);
+    second = AdjustSoundly(result.model, job, kMaxFocalRatioOnceMore);
     if (second.fault.empty()) result.model = WrittenAndRead(folder, second.model);
   }
   result.outcome = Outcome(before, result.model) + Refusal("lens", first.fault) +

@@ -22,6 +22,7 @@ struct AdjustmentJob {
   std::filesystem::path log_path;  // without "_triangulation.log"
   bool frees_distortion = true;    // false: the mapper had it free already
   bool frees_principal_point = true;
+  int num_threads = 1;
 };
 
 struct LensAdjustment {
@@ -38,7 +39,8 @@ struct LensAdjustment {
 // the first one is not, the model keeps its lens. To hold the principal point and try again would
 // hide that the model is wrong: on the amphora wreck, where the mapper's trial with a held
 // distortion had fallen into a lens of 122 px, it gave 183 px instead of 1090. Throws Error when
-// the model cannot be read or written. One thread: the same model each time.
+// the model cannot be read or written. The same model for any
+// number of threads.
 LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
                           const std::filesystem::path& folder);
 

@@ -31,6 +31,7 @@ struct MapperJob {
   // (adjust_lens.h). False: the user decides what the mapper refines.
   bool finds_lens = true;
   bool adjusts_principal_point = true;
+  int num_threads = 1;                // of our adjustment; -1 = all cores; never changes a result
   std::vector<std::string> pictures;  // those that have a verified pair
 };
 

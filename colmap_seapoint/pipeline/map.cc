@@ -121,6 +121,7 @@ MappingPlan PlanMapping(const AutomaticReconstructorOptions& options, const Work
   }
   job.finds_lens = finds_lens;
   job.adjusts_principal_point = options.adjust_principal_point;
+  job.num_threads = options.run.num_threads;
   return plan;
 }
 
