@@ -6,46 +6,21 @@
 #include <optional>
 #include <utility>
 
-#include "colmap_seapoint/adjustment/bundle_adjustment.h"
+#include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/image/image_file.h"
 #include "colmap_seapoint/mapping/retriangulate.h"
+#include "colmap_seapoint/mapping/sound_adjustment.h"
+#include "colmap_seapoint/remeasuring/remeasure_observations.h"
 
 namespace colmap_seapoint {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kMinPictures = 3;
-constexpr double kMaxPrincipalPointChange = 0.05;  // share of the longer side
-constexpr double kMaxFocalRatio = 2.0;             // up or down
+constexpr size_t kFirmObservations = 100;
+constexpr double kMaxFocalRatio = 2.0;  // up or down
 constexpr double kMaxFocalRatioOnceMore = 1.2;
-
-bool IsWithinRatio(double after, double before, double max_ratio) {
-  return after <= max_ratio * before && before <= max_ratio * after;  // false for NaN
-}
-
-// "" when the lens has changed by no more than a calibration may, else what has.
-std::string LensFault(const Camera& before, const Camera& after, double max_focal_ratio) {
-  if (!IsWithinRatio(after.FocalX(), before.FocalX(), max_focal_ratio) ||
-      !IsWithinRatio(after.FocalY(), before.FocalY(), max_focal_ratio)) {
-    return "the focal length moved too far";
-  }
-  const double point_change = std::hypot(after.PrincipalX() - before.PrincipalX(),
-                                         after.PrincipalY() - before.PrincipalY());
-  if (!(point_change <= kMaxPrincipalPointChange * std::max(before.width, before.height))) {
-    return "the principal point moved too far";
-  }
-  return "";
-}
-
-// The same of all cameras of a model.
-std::string Fault(const SparseModel& before, const SparseModel& after, double max_focal_ratio) {
-  for (const auto& [id, camera] : before.cameras) {
-    const std::string fault = LensFault(camera, after.cameras.at(id), max_focal_ratio);
-    if (!fault.empty()) return fault;
-  }
-  return "";
-}
 
 // What became of the first camera, as one line for the user.
 std::string Outcome(const SparseModel& before, const SparseModel& after) {
@@ -59,30 +34,36 @@ std::string Outcome(const SparseModel& before, const SparseModel& after) {
   return text;
 }
 
-// The adjusted model, or why the one before is better kept.
-struct Adjusted {
-  SparseModel model;
-  std::string fault;  // empty: the model is sound
-};
-
-Adjusted AdjustSoundly(const SparseModel& before, const AdjustmentJob& job,
-                       double max_focal_ratio) {
-  if (before.images.size() < kMinPictures) return {{}, "too few pictures"};
-  BundleAdjustmentOptions options;
-  options.refine_principal_point = job.frees_principal_point;
-  options.num_threads = job.num_threads;
-  std::optional<SparseModel> after = AdjustBundle(options, before);
-  if (!after) return {{}, "the adjustment failed"};
-  const std::string fault = Fault(before, *after, max_focal_ratio);
-  if (!fault.empty()) return {{}, fault};
-  SortImagesById(&*after);
-  return {std::move(*after), ""};
+size_t NumObservations(const PosedImage& image) {
+  return image.point3D_ids.size() -
+         static_cast<size_t>(
+             std::count(image.point3D_ids.begin(), image.point3D_ids.end(), kNoPoint3D));
 }
 
 // The model as everybody will read it: rotations are made unit ones again by every reading.
 SparseModel WrittenAndRead(const fs::path& folder, const SparseModel& model) {
   WriteSparseModelBinary(folder, model);
   return ReadSparseModel(folder);
+}
+
+// The model with its observations measured again in the pictures, where enough of them stay: each
+// picture keeps half of its observations, or as many as hold it firmly.
+SparseModel MeasuredAgain(const SparseModel& model, const AdjustmentJob& job) {
+  RemeasuringOptions options;
+  options.num_threads = job.num_threads;
+  Remeasurement measured = RemeasureObservations(options, model, [&](const PosedImage& image) {
+    return ReadGrayImage(job.image_path / image.name);
+  });
+  for (size_t i = 0; i < model.images.size(); ++i) {
+    const size_t before = NumObservations(model.images[i]);
+    const size_t after = NumObservations(measured.model.images[i]);
+    if (after < kFirmObservations && 2 * after < before) {
+      LogInfo("Observations stay as they were found: too few could be measured again in " +
+              model.images[i].name);
+      return model;
+    }
+  }
+  return std::move(measured.model);
 }
 
 std::string Refusal(const char* what, const std::string& fault) {
@@ -112,7 +93,10 @@ LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
                           const fs::path& folder) {
   const SparseModel before = ReadSparseModel(folder);
   LensAdjustment result;
-  const Adjusted first = AdjustSoundly(before, job, kMaxFocalRatio);
+  const auto adjust = [&](const SparseModel& model, double max_focal_ratio) {
+    return AdjustSoundly(model, {max_focal_ratio, job.frees_principal_point, job.num_threads});
+  };
+  const SoundAdjustment first = adjust(before, kMaxFocalRatio);
   const bool is_sound = first.fault.empty();
   result.distortion_is_sound = is_sound || !job.frees_distortion;
   result.model = is_sound ? WrittenAndRead(folder, first.model) : before;
@@ -123,9 +107,9 @@ LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
       Retriangulate(colmap, triangulation_job, folder, result.model);
   if (triangulation.model) result.model = WrittenAndRead(folder, *triangulation.model);
 
-  Adjusted second;
+  SoundAdjustment second;
   if (is_sound) {
-    second = AdjustSoundly(result.model, job, kMaxFocalRatioOnceMore);
+    second = adjust(MeasuredAgain(result.model, job), kMaxFocalRatioOnceMore);
     if (second.fault.empty()) result.model = WrittenAndRead(folder, second.model);
   }
   result.outcome = Outcome(before, result.model) + Refusal("lens", first.fault) +

@@ -1,19 +1,20 @@
 #include "colmap_seapoint/mapping/run_mapper.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <optional>
 #include <set>
 #include <system_error>
 #include <utility>
 
 #include "colmap_seapoint/base/error.h"
-#include "colmap_seapoint/base/natural_order.h"
 #include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
-#include "colmap_seapoint/io/files/atomic_file.h"
-#include "colmap_seapoint/io/files/subprocess.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/mapping/adjust_lens.h"
+#include "colmap_seapoint/mapping/lens_pilot.h"
+#include "colmap_seapoint/mapping/mapper_process.h"
+#include "colmap_seapoint/tracks/thinned_database.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -26,7 +27,11 @@ constexpr size_t kMinPicturesOfModel = 3;
 constexpr size_t kMinPointsOfModel = 50;
 constexpr char kRefineDistortion[] = "Mapper.ba_refine_extra_params";
 constexpr char kGlobalRefineDistortion[] = "GlobalMapper.ba_refine_extra_params";
+constexpr char kRefineFocal[] = "Mapper.ba_refine_focal_length";
 constexpr char kMapper[] = "mapper";
+constexpr char kFreeDistortion[] = "_free_distortion";
+// One in so many may stay without a pose before another trial is made.
+constexpr size_t kPicturesPerLost = 50;
 
 void RemoveAll(const fs::path& path) {
   std::error_code error;
@@ -44,17 +49,15 @@ void Rename(const fs::path& from, const fs::path& to) {
               "check the folder's permissions");
 }
 
-// How many pictures the present model has, from a line as "Registering image #3 (4)" (COLMAP 3.8)
-// or "Registering frame #3 (num_reg_frames=4)" (later versions); nullopt for other lines.
-std::optional<int> NumRegistered(const std::string& line) {
-  const size_t what = line.find("Registering ");
-  if (what == std::string::npos) return std::nullopt;
-  const size_t open = line.find('(', what);
-  if (open == std::string::npos) return std::nullopt;
-  const size_t digits = line.find_first_of("0123456789", open);
-  if (digits == std::string::npos) return std::nullopt;
-  return std::atoi(line.c_str() + digits);
-}
+// What a round may try.
+struct TrialPlan {
+  std::string name;  // of its folder and log, behind the round's
+  std::string command = kMapper;
+  fs::path database_path;
+  MapperOptions options;
+  bool holds_distortion = false;
+  bool must_succeed = false;
+};
 
 // One run of the mapper, in a folder of its own.
 struct Trial {
@@ -129,55 +132,98 @@ class MapperRounds {
     return job_.log_folder / ("mapper_" + trial + ".log");
   }
 
+  // What is tried first may be enough.
   bool RunRound(int round) {
-    const std::string name = std::to_string(round);
-    const bool is_first = round == 1;
-    const MapperOptions& usual = is_first ? job_.first_round : job_.later_rounds;
     Trial trial;
-    if (is_first && job_.global_round) {
-      trial = RunTrial(kGlobalMapper, name + "_global", *job_.global_round, true, false);
-    }
-    const auto try_too = [&](const std::string& suffix, const MapperOptions& options,
-                             bool holds_distortion, bool must_succeed) {
-      if (!IsDoubtful(trial)) return;
-      const Trial other = RunTrial(kMapper, name + suffix, options, holds_distortion, must_succeed);
+    for (TrialPlan& plan : round == 1 ? PlansOfFirstRound() : PlansOfLaterRounds()) {
+      if (!IsDoubtful(trial)) break;
+      if (plan.name == kFreeDistortion && !trial.holds_distortion) break;
+      plan.must_succeed = plan.must_succeed && trial.models.empty();
+      const Trial other = RunTrial(std::to_string(round) + plan.name, plan);
       if (trial.command.empty() || IsBetter(other, trial)) trial = other;
-    };
-    if (is_first && job_.initial_pair_round) {
-      try_too("_initial_pair", *job_.initial_pair_round, job_.finds_lens, false);
     }
-    try_too("", usual, job_.finds_lens, is_first && trial.models.empty());
-    if (is_first && trial.holds_distortion) try_too("_free_distortion", usual, false, false);
-    return TakeModels("Mapper, round " + name, trial);
+    return TakeModels("Mapper, round " + std::to_string(round), trial);
   }
 
+  std::vector<TrialPlan> PlansOfFirstRound() {
+    const bool holds = job_.finds_lens;
+    const MapperOptions& usual = job_.first_round;
+    std::vector<TrialPlan> plans;
+    if (job_.global_round) {
+      plans.push_back({"_global", kGlobalMapper, job_.database_path, *job_.global_round, true});
+    }
+    if (job_.thins_matches) plans.push_back(PlanThinned());
+    if (job_.initial_pair_round) {
+      plans.push_back(
+          {"_initial_pair", kMapper, job_.database_path, *job_.initial_pair_round, holds});
+    }
+    plans.push_back({"", kMapper, job_.database_path, usual, holds, true});
+    plans.push_back({kFreeDistortion, kMapper, job_.database_path, usual, false});
+    return plans;
+  }
+
+  std::vector<TrialPlan> PlansOfLaterRounds() const {
+    return {{"", kMapper, job_.database_path, job_.later_rounds, job_.finds_lens}};
+  }
+
+  // With a few hundred matches a picture, and where there are many pictures with the lens that some
+  // of them tell.
+  TrialPlan PlanThinned() {
+    const fs::path folder = folder_ / "trial_thinned_matches";
+    fs::create_directories(folder / "pilot");
+    TrialPlan plan = {"_thinned", kMapper, folder / "database.db",
+                      job_.initial_pair_round.value_or(job_.first_round), job_.finds_lens};
+    WriteThinnedDatabase(ColmapDatabase(job_.database_path, ColmapDatabase::Mode::kReadOnly,
+                                        ColmapDatabase::Check::kNone),
+                         {}, plan.database_path);
+    if (!job_.finds_lens || job_.pictures.size() < kMinPicturesOfPilot) return plan;
+    MapperCall pilot = CallOf(plan, folder / "pilot", "1_pilot");
+    const auto lenses = LearnLenses(colmap_, pilot, job_.adjusts_principal_point, job_.num_threads);
+    if (lenses.empty()) return plan;
+    ColmapDatabase thinned(plan.database_path, ColmapDatabase::Mode::kReadWrite,
+                           ColmapDatabase::Check::kNone);
+    for (const auto& [id, camera] : lenses) SetCalibration(&thinned, camera);
+    thinned.Finish();
+    if (colmap_.HasMapperOption(kRefineFocal)) plan.options[kRefineFocal] = "0";
+    return plan;
+  }
+
+  // Of a large survey a few pictures may show nothing that ties them: they are the later rounds'.
   bool IsDoubtful(const Trial& trial) const {
-    return trial.pictures.size() < missing_.size() || !trial.lenses_are_sound;
+    const size_t num_missing = missing_.size() - std::min(missing_.size(), trial.pictures.size());
+    return num_missing > missing_.size() / kPicturesPerLost || !trial.lenses_are_sound;
   }
 
-  Trial RunTrial(const std::string& command, const std::string& name, const MapperOptions& options,
-                 bool holds_distortion, bool must_succeed) {
+  MapperCall CallOf(const TrialPlan& plan, const fs::path& folder, const std::string& name) const {
+    MapperCall call;
+    call.command = plan.command;
+    call.database_path = plan.database_path;
+    call.image_path = job_.image_path;
+    call.output_path = folder;
+    call.options = plan.options;
+    const char* refine = plan.command == kMapper ? kRefineDistortion : kGlobalRefineDistortion;
+    if (plan.holds_distortion && colmap_.HasMapperOption(refine)) call.options[refine] = "0";
+    if (num_models_ > 0) call.pictures.assign(missing_.begin(), missing_.end());
+    call.num_pictures = missing_.size();
+    call.log_path = LogOf(name);
+    call.must_succeed = plan.must_succeed;
+    return call;
+  }
+
+  Trial RunTrial(const std::string& name, const TrialPlan& plan) {
     Trial trial;
     trial.folder = folder_ / ("trial_" + name);
-    trial.command = command;
-    trial.options = options;
-    const char* refine = command == kMapper ? kRefineDistortion : kGlobalRefineDistortion;
-    trial.holds_distortion = holds_distortion && colmap_.HasMapperOption(refine);
-    if (trial.holds_distortion) trial.options[refine] = "0";
     fs::create_directories(trial.folder);
-    Progress progress("Pictures registered by colmap mapper",
-                      static_cast<int64_t>(missing_.size()));
-    std::string last_line;
-    const auto read_line = [&](const std::string& line) {
-      if (!line.empty()) last_line = line;
-      if (const auto count = NumRegistered(line)) progress.Update(*count);
-    };
-    const auto result = RunSubprocess(colmap_.path, Arguments(trial), LogOf(name), read_line,
-                                      colmap_.timeout_seconds);
-    end_ = result.Text() + ", '" + last_line + "'";
-    const std::vector<fs::path> models = ListModels(trial.folder);
-    if (!CheckResult(result, last_line, !models.empty(), LogOf(name), must_succeed)) return trial;
-    for (const fs::path& model : ModelsOfTheirOwn(models)) AddModel(model, name, &trial);
+    const MapperCall call = CallOf(plan, trial.folder, name);
+    trial.command = call.command;
+    trial.options = call.options;
+    trial.holds_distortion = call.options != plan.options;
+    const MapperEnd end = RunMapperProcess(colmap_, call);
+    end_ = end.text;
+    if (!end.is_usable) return trial;
+    for (const fs::path& model : ModelsOfTheirOwn(ListModels(trial.folder))) {
+      AddModel(model, name, &trial);
+    }
     return trial;
   }
 
@@ -208,41 +254,6 @@ class MapperRounds {
     job.frees_principal_point = job_.adjusts_principal_point;
     job.num_threads = job_.num_threads;
     return job;
-  }
-
-  std::vector<std::string> Arguments(const Trial& trial) const {
-    std::vector<std::string> arguments = {
-        trial.command,        "--database_path",        job_.database_path.string(),
-        "--image_path",       job_.image_path.string(), "--output_path",
-        trial.folder.string()};
-    if (num_models_ > 0) {
-      const fs::path list = trial.folder / "pictures.txt";
-      std::string names;
-      for (const std::string& name : missing_) names += name + "\n";
-      WriteTextFile(list, names);
-      arguments.insert(arguments.end(), {"--image_list_path", list.string()});
-    }
-    AppendOptions(trial.options, &arguments);
-    return arguments;
-  }
-
-  // Whether what the mapper left can be used. That it found no model is no failure here, though
-  // COLMAP 3.8 exits with 1 for it.
-  bool CheckResult(const SubprocessResult& result, const std::string& last_line, bool found_model,
-                   const fs::path& log, bool must_succeed) const {
-    if (last_line.find("parse options") != std::string::npos ||
-        last_line.find("Invalid options") != std::string::npos) {
-      throw UsageError("--Mapper: " + colmap_.path.string() + " refuses a value: " + last_line);
-    }
-    if (result.signal_number == 0 && (result.exit_code == 0 || !found_model)) return true;
-    const std::string finding = "the mapper failed (" + end_ + ")";
-    if (must_succeed) {
-      throw Error(colmap_.path.string(), finding,
-                  "read its output in " + log.string() + " and run the same command again");
-    }
-    // What earlier rounds and trials have found stands.
-    LogWarning(finding + "; its output is in " + log.string());
-    return false;
   }
 
   // Numbers the trial's models on, and strikes their pictures off the missing ones. True when there
@@ -278,19 +289,6 @@ class MapperRounds {
 
 void RunMapper(const ColmapProgram& colmap, const MapperJob& job) {
   MapperRounds(colmap, job).Run();
-}
-
-std::vector<fs::path> ListModels(const fs::path& sparse) {
-  std::vector<fs::path> models;
-  std::error_code error;
-  for (fs::directory_iterator entry(sparse, error), end; !error && entry != end;
-       entry.increment(error)) {
-    if (entry->is_directory() && IsSparseModel(entry->path())) models.push_back(entry->path());
-  }
-  std::sort(models.begin(), models.end(), [](const fs::path& a, const fs::path& b) {
-    return NaturalLess(a.filename().string(), b.filename().string());
-  });
-  return models;
 }
 
 }  // namespace colmap_seapoint

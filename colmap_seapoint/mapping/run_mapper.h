@@ -23,6 +23,9 @@ struct MapperJob {
   // Where given, the global mapper is tried first; the first round proper is then left out when
   // that registers all pictures.
   std::optional<MapperOptions> global_round;
+  // True: the first round is tried with fewer matches before it is tried with all of them
+  // (tracks/thinned_database.h), and of a large survey with the lens of a pilot (lens_pilot.h).
+  bool thins_matches = false;
   // Where given, the first round is tried with these before it is tried as it is (initial_pair.h).
   std::optional<MapperOptions> initial_pair_round;
   MapperOptions first_round;
@@ -39,12 +42,10 @@ struct MapperJob {
 // finds one: the models of all rounds are numbered on. When the first round leaves pictures over,
 // or a lens that cannot be adjusted soundly, it is tried with a free distortion too, and the better
 // trial counts: the one with more pictures, then the one with the smaller error. The trials of
-// the global mapper and of the given initial pair are compared in the same way. Models of fewer
+// the global mapper, of thinned matches and of the given initial pair are compared in the same way;
+// one picture in 50 may be left over before another trial is made. Models of fewer
 // than 50 points are not taken. Throws Error when the mapper fails or no round finds a model,
 // UsageError when it refuses an option's value.
 void RunMapper(const ColmapProgram& colmap, const MapperJob& job);
-
-// Model folders below `sparse`, in natural order; empty when there is no such folder.
-std::vector<std::filesystem::path> ListModels(const std::filesystem::path& sparse);
 
 }  // namespace colmap_seapoint

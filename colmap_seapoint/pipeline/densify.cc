@@ -15,7 +15,7 @@
 #include "colmap_seapoint/io/files/model_units.h"
 #include "colmap_seapoint/io/files/run_report.h"
 #include "colmap_seapoint/io/outputs/output_folder.h"
-#include "colmap_seapoint/mapping/run_mapper.h"
+#include "colmap_seapoint/mapping/mapper_process.h"
 #include "colmap_seapoint/pictures/model_pictures.h"
 #include "colmap_seapoint/pictures/picture_scale.h"
 #include "colmap_seapoint/pictures/read_rig.h"

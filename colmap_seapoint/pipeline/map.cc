@@ -12,6 +12,7 @@
 #include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/io/files/run_report_json.h"
 #include "colmap_seapoint/mapping/initial_pair.h"
+#include "colmap_seapoint/mapping/mapper_process.h"
 #include "colmap_seapoint/pipeline/workspace_database.h"
 
 namespace colmap_seapoint {
@@ -41,8 +42,9 @@ std::string Inputs(const MappingPlan& plan, const ColmapDatabase& database,
   const MapperJob& job = plan.job;
   const auto begun = state.Read("database");
   return DatabaseFingerprint(database) + (begun ? begun->dump() : "") + plan.colmap.version +
-         (job.finds_lens ? "lens" : "") + (job.adjusts_principal_point ? "adjusted" : "") +
-         (job.global_round ? "global" : "") + Text(job.first_round) + Text(job.later_rounds);
+         (job.finds_lens ? "lens" : "") + (job.thins_matches ? "thinned" : "") +
+         (job.adjusts_principal_point ? "adjusted" : "") + (job.global_round ? "global" : "") +
+         Text(job.first_round) + Text(job.later_rounds);
 }
 
 // The models below `sparse` that are ours.
@@ -120,6 +122,7 @@ MappingPlan PlanMapping(const AutomaticReconstructorOptions& options, const Work
     job.global_round = OptionsOfGlobalMapper(plan.colmap, seed);
   }
   job.finds_lens = finds_lens;
+  job.thins_matches = finds_lens && options.quality != "archive";
   job.adjusts_principal_point = options.adjust_principal_point;
   job.num_threads = options.run.num_threads;
   return plan;

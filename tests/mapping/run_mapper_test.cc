@@ -6,6 +6,7 @@
 #include <set>
 
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/mapping/mapper_process.h"
 #include "tests/io/test_files.h"
 #include "tests/mapping/exact_survey.h"
 #include "tests/mapping/scripted_colmap.h"

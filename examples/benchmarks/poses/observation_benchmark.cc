@@ -11,7 +11,7 @@
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "colmap_seapoint/mapping/adjust_lens.h"
-#include "colmap_seapoint/mapping/bundle_adjustment.h"
+#include "colmap_seapoint/adjustment/bundle_adjustment.h"
 #include "colmap_seapoint/remeasuring/remeasure_observations.h"
 #include "examples/benchmarks/poses/observation_errors.h"
 #include "examples/subcommands.h"
@@ -59,7 +59,7 @@ int Adjust(const std::vector<std::string>& arguments) {
   add("help,h", "this text");
   add("input_path", po::value(&input_path)->required(), "COLMAP model");
   add("output_path", po::value(&output_path)->required(), "folder of the adjusted model");
-  add("observation_sigma", Default(&options.observation_sigma), "pixels, where the loss bends");
+  add("observation_sigma", Default(&options.loss.scale), "pixels, where the loss bends");
   if (!ParseOptions(description, arguments)) return 0;
   const SparseModel model = ReadSparseModel(input_path);
   const Timer timer;

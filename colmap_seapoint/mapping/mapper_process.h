@@ -1,0 +1,37 @@
+// One run of COLMAP's mapper, or of its global one, as a child.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "colmap_seapoint/mapping/colmap_program.h"
+
+namespace colmap_seapoint {
+
+struct MapperCall {
+  std::string command;  // "mapper" or "global_mapper"
+  std::filesystem::path database_path;
+  std::filesystem::path image_path;
+  std::filesystem::path output_path;  // an empty folder; gets 0/, 1/ ...
+  MapperOptions options;
+  std::vector<std::string> pictures;  // the only ones to be mapped; empty = all
+  size_t num_pictures = 0;            // that there are to be mapped, for the progress line
+  std::filesystem::path log_path;
+  bool must_succeed = false;
+};
+
+struct MapperEnd {
+  bool is_usable = false;  // what it left, which may be nothing
+  std::string text;        // how it ended, and its last line
+};
+
+// Runs it. That it finds no model is no failure, though COLMAP 3.8 exits with 1 for it. When it
+// fails otherwise: Error if it must succeed, else a warning, since what earlier runs have found
+// stands. Throws UsageError when it refuses an option's value.
+MapperEnd RunMapperProcess(const ColmapProgram& colmap, const MapperCall& call);
+
+// Model folders below `sparse`, in natural order; empty when there is no such folder.
+std::vector<std::filesystem::path> ListModels(const std::filesystem::path& sparse);
+
+}  // namespace colmap_seapoint
