@@ -24,6 +24,8 @@ constexpr int kMaxRounds = 5;
 constexpr size_t kMinPicturesOfModel = 3;
 // The relaxed thresholds of later rounds let models of a handful of chance points pass.
 constexpr size_t kMinPointsOfModel = 50;
+constexpr char kMinModelSize[] = "Mapper.min_model_size";
+constexpr char kNumBeginnings[] = "Mapper.init_num_trials";
 constexpr char kRefineDistortion[] = "Mapper.ba_refine_extra_params";
 constexpr char kGlobalRefineDistortion[] = "GlobalMapper.ba_refine_extra_params";
 constexpr char kMapper[] = "mapper";
@@ -148,7 +150,24 @@ class MapperRounds {
     }
     try_too("", usual, job_.finds_lens, is_first && trial.models.empty());
     if (is_first && trial.holds_distortion) try_too("_free_distortion", usual, false, false);
+    if (const auto larger = LargerModels(usual); is_first && larger) {
+      try_too("_larger_models", *larger, false, false);
+    }
     return TakeModels("Mapper, round " + name, trial);
+  }
+
+  // COLMAP's way with pictures that a small model leaves over: to drop it and begin at another
+  // pair, but for few of its 200 times. nullopt where that would be no other trial, or the user
+  // chose.
+  std::optional<MapperOptions> LargerModels(const MapperOptions& usual) const {
+    if (!job_.finds_lens || usual.count(kNumBeginnings) > 0) return std::nullopt;
+    for (const char* name : {kMinModelSize, kNumBeginnings}) {
+      if (!colmap_.HasMapperOption(name)) return std::nullopt;
+    }
+    MapperOptions options = usual;
+    options[kMinModelSize] = "10";
+    options[kNumBeginnings] = "2";
+    return options;
   }
 
   bool IsDoubtful(const Trial& trial) const {
