@@ -25,6 +25,8 @@ constexpr int kMaxRounds = 5;
 constexpr size_t kMinPicturesOfModel = 3;
 // The relaxed thresholds of later rounds let models of a handful of chance points pass.
 constexpr size_t kMinPointsOfModel = 50;
+constexpr char kMinModelSize[] = "Mapper.min_model_size";
+constexpr char kNumBeginnings[] = "Mapper.init_num_trials";
 constexpr char kRefineDistortion[] = "Mapper.ba_refine_extra_params";
 constexpr char kGlobalRefineDistortion[] = "GlobalMapper.ba_refine_extra_params";
 constexpr char kRefineFocal[] = "Mapper.ba_refine_focal_length";
@@ -137,7 +139,7 @@ class MapperRounds {
     Trial trial;
     for (TrialPlan& plan : round == 1 ? PlansOfFirstRound() : PlansOfLaterRounds()) {
       if (!IsDoubtful(trial)) break;
-      if (plan.name == kFreeDistortion && !trial.holds_distortion) break;
+      if (plan.name == kFreeDistortion && !trial.holds_distortion) continue;
       plan.must_succeed = plan.must_succeed && trial.models.empty();
       const Trial other = RunTrial(std::to_string(round) + plan.name, plan);
       if (trial.command.empty() || IsBetter(other, trial)) trial = other;
@@ -159,7 +161,24 @@ class MapperRounds {
     }
     plans.push_back({"", kMapper, job_.database_path, usual, holds, true});
     plans.push_back({kFreeDistortion, kMapper, job_.database_path, usual, false});
+    if (const auto larger = LargerModels(usual)) {
+      plans.push_back({"_larger_models", kMapper, job_.database_path, *larger, false});
+    }
     return plans;
+  }
+
+  // COLMAP's way with pictures that a small model leaves over: to drop it and begin at another
+  // pair, but for few of its 200 times. nullopt where that would be no other trial, or the user
+  // chose.
+  std::optional<MapperOptions> LargerModels(const MapperOptions& usual) const {
+    if (!job_.finds_lens || usual.count(kNumBeginnings) > 0) return std::nullopt;
+    for (const char* name : {kMinModelSize, kNumBeginnings}) {
+      if (!colmap_.HasMapperOption(name)) return std::nullopt;
+    }
+    MapperOptions options = usual;
+    options[kMinModelSize] = "10";
+    options[kNumBeginnings] = "2";
+    return options;
   }
 
   std::vector<TrialPlan> PlansOfLaterRounds() const {

@@ -40,12 +40,13 @@ struct MapperJob {
 
 // Maps all pictures; then, in further rounds, those that are in no model yet, as long as a round
 // finds one: the models of all rounds are numbered on. When the first round leaves pictures over,
-// or a lens that cannot be adjusted soundly, it is tried with a free distortion too, and the better
-// trial counts: the one with more pictures, then the one with the smaller error. The trials of
-// the global mapper, of thinned matches and of the given initial pair are compared in the same way;
-// one picture in 50 may be left over before another trial is made. Models of fewer
-// than 50 points are not taken. Throws Error when the mapper fails or no round finds a model,
-// UsageError when it refuses an option's value.
+// or a lens that cannot be adjusted soundly, it is tried with a free distortion too, then in
+// COLMAP's way of dropping small models and beginning anew, and the better trial counts: the one
+// with more pictures, then the one with the smaller error. The trials of the global mapper, of
+// thinned matches and of the given initial pair are compared in the same way; one picture in 50 may
+// be left over before another trial is made. Models of fewer than 50 points are not taken. Throws
+// Error when the mapper fails or no round finds a model, UsageError when it refuses an option's
+// value.
 void RunMapper(const ColmapProgram& colmap, const MapperJob& job);
 
 }  // namespace colmap_seapoint

@@ -276,6 +276,18 @@ TEST_F(RunMapperTest, AFailureOfTheSecondTrialLeavesTheFirst) {
   EXPECT_EQ(NamesIn("0").size(), 9u);
 }
 
+TEST_F(RunMapperTest, WhereASmallModelLeavesPicturesOverColmapBeginsAFewTimesAnew) {
+  colmap_.SetHelp(MapperHelp("COLMAP 3.8", {"Mapper.min_model_size", "Mapper.init_num_trials"}));
+  job_.finds_lens = true;
+  colmap_.Leaves(kMapper, 1, "0", Part(1, 4));
+  colmap_.Leaves(kMapper, 2, "0", survey_);
+  Run();
+  ASSERT_EQ(colmap_.NumCalls(kMapper), 2);
+  EXPECT_EQ(colmap_.Value(kMapper, 2, "Mapper.min_model_size"), "10");
+  EXPECT_EQ(colmap_.Value(kMapper, 2, "Mapper.init_num_trials"), "2");
+  EXPECT_EQ(NamesIn("0").size(), 10u);
+}
+
 class InitialPairRound : public RunMapperTest {
  protected:
   InitialPairRound() { job_.initial_pair_round = MapperOptions{{"Mapper.init_image_id1", "7"}}; }
