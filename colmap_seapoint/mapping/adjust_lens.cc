@@ -6,12 +6,12 @@
 #include <optional>
 #include <utility>
 
-#include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "colmap_seapoint/mapping/retriangulate.h"
 #include "colmap_seapoint/mapping/sound_adjustment.h"
 #include "colmap_seapoint/remeasuring/remeasure_observations.h"
+#include "feature/remeasuring/patch_matching.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -46,24 +46,31 @@ SparseModel WrittenAndRead(const fs::path& folder, const SparseModel& model) {
   return ReadSparseModel(folder);
 }
 
-// The model with its observations measured again in the pictures, where enough of them stay: each
-// picture keeps half of its observations, or as many as hold it firmly.
-SparseModel MeasuredAgain(const SparseModel& model, const AdjustmentJob& job) {
-  RemeasuringOptions options;
-  options.num_threads = job.num_threads;
-  Remeasurement measured = RemeasureObservations(options, model, [&](const PosedImage& image) {
-    return ReadGrayImage(job.image_path / image.name);
-  });
-  for (size_t i = 0; i < model.images.size(); ++i) {
-    const size_t before = NumObservations(model.images[i]);
-    const size_t after = NumObservations(measured.model.images[i]);
-    if (after < kFirmObservations && 2 * after < before) {
-      LogInfo("Observations stay as they were found: too few could be measured again in " +
-              model.images[i].name);
-      return model;
+// Whether each picture keeps half of its observations, or as many as hold it firmly.
+bool HoldsFirmly(const SparseModel& before, const SparseModel& after) {
+  for (size_t i = 0; i < before.images.size(); ++i) {
+    const size_t num_left = NumObservations(after.images[i]);
+    if (num_left < kFirmObservations && 2 * num_left < NumObservations(before.images[i])) {
+      return false;
     }
   }
-  return std::move(measured.model);
+  return true;
+}
+
+// The model with its observations measured again in the pictures: those that are known best where
+// they are enough, else those that are known at all; nullopt where neither are.
+std::optional<SparseModel> MeasuredAgain(const SparseModel& model, const AdjustmentJob& job) {
+  RemeasuringOptions options;
+  options.num_threads = job.num_threads;
+  const auto read = [&](const PosedImage& image) {
+    return ReadGrayImage(job.image_path / image.name);
+  };
+  for (const double max_sigma : {options.max_sigma, kMaxPatchSigma}) {
+    options.max_sigma = max_sigma;
+    Remeasurement measured = RemeasureObservations(options, model, read);
+    if (HoldsFirmly(model, measured.model)) return std::move(measured.model);
+  }
+  return std::nullopt;
 }
 
 std::string Refusal(const char* what, const std::string& fault) {
@@ -93,10 +100,8 @@ LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
                           const fs::path& folder) {
   const SparseModel before = ReadSparseModel(folder);
   LensAdjustment result;
-  const auto adjust = [&](const SparseModel& model, double max_focal_ratio) {
-    return AdjustSoundly(model, {max_focal_ratio, job.frees_principal_point, job.num_threads});
-  };
-  const SoundAdjustment first = adjust(before, kMaxFocalRatio);
+  LensLimits limits = {kMaxFocalRatio, job.frees_principal_point, false, job.num_threads};
+  const SoundAdjustment first = AdjustSoundly(before, limits);
   const bool is_sound = first.fault.empty();
   result.distortion_is_sound = is_sound || !job.frees_distortion;
   result.model = is_sound ? WrittenAndRead(folder, first.model) : before;
@@ -109,7 +114,10 @@ LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
 
   SoundAdjustment second;
   if (is_sound) {
-    second = adjust(MeasuredAgain(result.model, job), kMaxFocalRatioOnceMore);
+    const std::optional<SparseModel> measured = MeasuredAgain(result.model, job);
+    limits.max_focal_ratio = kMaxFocalRatioOnceMore;
+    limits.rejects_outliers = true;
+    second = AdjustSoundly(measured.value_or(result.model), limits);
     if (second.fault.empty()) result.model = WrittenAndRead(folder, second.model);
   }
   result.outcome = Outcome(before, result.model) + Refusal("lens", first.fault) +

@@ -61,7 +61,7 @@ std::map<uint32_t, Camera> LearnLenses(const ColmapProgram& colmap, MapperCall c
   const SparseModel model = LargestModel(call.output_path);
   if (2 * model.images.size() < call.pictures.size()) return {};
   const SoundAdjustment adjusted =
-      AdjustSoundly(model, {kMaxFocalRatio, frees_principal_point, num_threads});
+      AdjustSoundly(model, {kMaxFocalRatio, frees_principal_point, false, num_threads});
   if (!adjusted.fault.empty()) return {};
   std::map<uint32_t, Camera> lenses;
   for (const PosedImage& image : adjusted.model.images) {

@@ -8,13 +8,10 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
-#include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
-#include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/mapping/adjust_lens.h"
-#include "colmap_seapoint/mapping/lens_pilot.h"
 #include "colmap_seapoint/mapping/mapper_process.h"
-#include "colmap_seapoint/tracks/thinned_database.h"
+#include "colmap_seapoint/mapping/trial_plans.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -25,13 +22,6 @@ constexpr int kMaxRounds = 5;
 constexpr size_t kMinPicturesOfModel = 3;
 // The relaxed thresholds of later rounds let models of a handful of chance points pass.
 constexpr size_t kMinPointsOfModel = 50;
-constexpr char kMinModelSize[] = "Mapper.min_model_size";
-constexpr char kNumBeginnings[] = "Mapper.init_num_trials";
-constexpr char kRefineDistortion[] = "Mapper.ba_refine_extra_params";
-constexpr char kGlobalRefineDistortion[] = "GlobalMapper.ba_refine_extra_params";
-constexpr char kRefineFocal[] = "Mapper.ba_refine_focal_length";
-constexpr char kMapper[] = "mapper";
-constexpr char kFreeDistortion[] = "_free_distortion";
 // One in so many may stay without a pose before another trial is made.
 constexpr size_t kPicturesPerLost = 50;
 
@@ -50,16 +40,6 @@ void Rename(const fs::path& from, const fs::path& to) {
   throw Error(from.string(), "cannot be renamed to " + to.string() + " (" + error.message() + ")",
               "check the folder's permissions");
 }
-
-// What a round may try.
-struct TrialPlan {
-  std::string name;  // of its folder and log, behind the round's
-  std::string command = kMapper;
-  fs::path database_path;
-  MapperOptions options;
-  bool holds_distortion = false;
-  bool must_succeed = false;
-};
 
 // One run of the mapper, in a folder of its own.
 struct Trial {
@@ -125,86 +105,26 @@ class MapperRounds {
       throw Error(job_.database_path.string(), "the mapper found no model (" + end_ + ")",
                   "take pictures that overlap more, or relax --Mapper.abs_pose_min_num_inliers; "
                   "its output is in " +
-                      LogOf("1").string());
+                      (job_.log_folder / "mapper_1.log").string());
     }
   }
 
  private:
-  fs::path LogOf(const std::string& trial) const {
-    return job_.log_folder / ("mapper_" + trial + ".log");
-  }
-
   // What is tried first may be enough.
   bool RunRound(int round) {
     Trial trial;
-    for (TrialPlan& plan : round == 1 ? PlansOfFirstRound() : PlansOfLaterRounds()) {
+    std::vector<TrialPlan> plans = round == 1
+                                       ? PlanFirstRound(colmap_, job_, folder_ / "trial_thinned")
+                                       : PlanLaterRound(job_);
+    for (TrialPlan& plan : plans) {
       if (!IsDoubtful(trial)) break;
       if (plan.name == kFreeDistortion && !trial.holds_distortion) continue;
+      if (plan.prepare) plan.prepare(&plan);
       plan.must_succeed = plan.must_succeed && trial.models.empty();
       const Trial other = RunTrial(std::to_string(round) + plan.name, plan);
       if (trial.command.empty() || IsBetter(other, trial)) trial = other;
     }
     return TakeModels("Mapper, round " + std::to_string(round), trial);
-  }
-
-  std::vector<TrialPlan> PlansOfFirstRound() {
-    const bool holds = job_.finds_lens;
-    const MapperOptions& usual = job_.first_round;
-    std::vector<TrialPlan> plans;
-    if (job_.global_round) {
-      plans.push_back({"_global", kGlobalMapper, job_.database_path, *job_.global_round, true});
-    }
-    if (job_.thins_matches) plans.push_back(PlanThinned());
-    if (job_.initial_pair_round) {
-      plans.push_back(
-          {"_initial_pair", kMapper, job_.database_path, *job_.initial_pair_round, holds});
-    }
-    plans.push_back({"", kMapper, job_.database_path, usual, holds, true});
-    plans.push_back({kFreeDistortion, kMapper, job_.database_path, usual, false});
-    if (const auto larger = LargerModels(usual)) {
-      plans.push_back({"_larger_models", kMapper, job_.database_path, *larger, false});
-    }
-    return plans;
-  }
-
-  // COLMAP's way with pictures that a small model leaves over: to drop it and begin at another
-  // pair, but for few of its 200 times. nullopt where that would be no other trial, or the user
-  // chose.
-  std::optional<MapperOptions> LargerModels(const MapperOptions& usual) const {
-    if (!job_.finds_lens || usual.count(kNumBeginnings) > 0) return std::nullopt;
-    for (const char* name : {kMinModelSize, kNumBeginnings}) {
-      if (!colmap_.HasMapperOption(name)) return std::nullopt;
-    }
-    MapperOptions options = usual;
-    options[kMinModelSize] = "10";
-    options[kNumBeginnings] = "2";
-    return options;
-  }
-
-  std::vector<TrialPlan> PlansOfLaterRounds() const {
-    return {{"", kMapper, job_.database_path, job_.later_rounds, job_.finds_lens}};
-  }
-
-  // With a few hundred matches a picture, and where there are many pictures with the lens that some
-  // of them tell.
-  TrialPlan PlanThinned() {
-    const fs::path folder = folder_ / "trial_thinned_matches";
-    fs::create_directories(folder / "pilot");
-    TrialPlan plan = {"_thinned", kMapper, folder / "database.db",
-                      job_.initial_pair_round.value_or(job_.first_round), job_.finds_lens};
-    WriteThinnedDatabase(ColmapDatabase(job_.database_path, ColmapDatabase::Mode::kReadOnly,
-                                        ColmapDatabase::Check::kNone),
-                         {}, plan.database_path);
-    if (!job_.finds_lens || job_.pictures.size() < kMinPicturesOfPilot) return plan;
-    MapperCall pilot = CallOf(plan, folder / "pilot", "1_pilot");
-    const auto lenses = LearnLenses(colmap_, pilot, job_.adjusts_principal_point, job_.num_threads);
-    if (lenses.empty()) return plan;
-    ColmapDatabase thinned(plan.database_path, ColmapDatabase::Mode::kReadWrite,
-                           ColmapDatabase::Check::kNone);
-    for (const auto& [id, camera] : lenses) SetCalibration(&thinned, camera);
-    thinned.Finish();
-    if (colmap_.HasMapperOption(kRefineFocal)) plan.options[kRefineFocal] = "0";
-    return plan;
   }
 
   // Of a large survey a few pictures may show nothing that ties them: they are the later rounds'.
@@ -213,27 +133,13 @@ class MapperRounds {
     return num_missing > missing_.size() / kPicturesPerLost || !trial.lenses_are_sound;
   }
 
-  MapperCall CallOf(const TrialPlan& plan, const fs::path& folder, const std::string& name) const {
-    MapperCall call;
-    call.command = plan.command;
-    call.database_path = plan.database_path;
-    call.image_path = job_.image_path;
-    call.output_path = folder;
-    call.options = plan.options;
-    const char* refine = plan.command == kMapper ? kRefineDistortion : kGlobalRefineDistortion;
-    if (plan.holds_distortion && colmap_.HasMapperOption(refine)) call.options[refine] = "0";
-    if (num_models_ > 0) call.pictures.assign(missing_.begin(), missing_.end());
-    call.num_pictures = missing_.size();
-    call.log_path = LogOf(name);
-    call.must_succeed = plan.must_succeed;
-    return call;
-  }
-
   Trial RunTrial(const std::string& name, const TrialPlan& plan) {
     Trial trial;
     trial.folder = folder_ / ("trial_" + name);
     fs::create_directories(trial.folder);
-    const MapperCall call = CallOf(plan, trial.folder, name);
+    MapperCall call = CallOf(colmap_, job_, plan, trial.folder, name);
+    if (num_models_ > 0) call.pictures.assign(missing_.begin(), missing_.end());
+    call.num_pictures = missing_.size();
     trial.command = call.command;
     trial.options = call.options;
     trial.holds_distortion = call.options != plan.options;

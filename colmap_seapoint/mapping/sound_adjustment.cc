@@ -61,6 +61,7 @@ SoundAdjustment AdjustSoundly(const SparseModel& before, const LensLimits& limit
   BundleAdjustmentOptions options;
   options.refine_principal_point = limits.frees_principal_point;
   options.num_threads = limits.num_threads;
+  if (!limits.rejects_outliers) options.last_loss.reset();
   std::optional<SparseModel> after = AdjustBundle(options, before);
   if (after) {
     options.lenses = LensesToTie(before, *after);

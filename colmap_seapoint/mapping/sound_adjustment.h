@@ -10,6 +10,9 @@ namespace colmap_seapoint {
 struct LensLimits {
   double max_focal_ratio = 2;  // to what it was, up or down
   bool frees_principal_point = true;
+  // Observations that are far off shall count for nothing in the end; not worth its time before the
+  // last adjustment.
+  bool rejects_outliers = false;
   int num_threads = 1;  // -1 = all; never changes a result
 };
 

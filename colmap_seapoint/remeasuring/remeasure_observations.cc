@@ -139,6 +139,7 @@ class Remeasuring {
     if (measurement.outcome != MeasurementOutcome::kMoved) return measurement;
     measurement.pixel = match.pixel + predicted->other_from_reference * patch.aside.cast<double>();
     const double move = (measurement.pixel - image.points2D[observation.point2D_idx]).norm();
+    if (!(match.sigma <= options_.max_sigma)) measurement.outcome = MeasurementOutcome::kUnsure;
     if (!(move <= options_.max_move)) measurement.outcome = MeasurementOutcome::kElsewhere;
     return measurement;
   }

@@ -10,6 +10,7 @@
 #include "tests/io/test_files.h"
 #include "tests/mapping/exact_survey.h"
 #include "tests/mapping/scripted_colmap.h"
+#include "tests/mapping/survey_database.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -316,6 +317,42 @@ TEST_F(InitialPairRound, ThatFailsCostsNothing) {
   Run();
   EXPECT_EQ(NamesIn("0").size(), 10u);
   EXPECT_EQ(NumModels(), 1u);
+}
+
+class ThinnedRound : public RunMapperTest {
+ protected:
+  ThinnedRound() {
+    WriteSurveyDatabase(survey_, job_.database_path);
+    job_.thins_matches = true;
+    job_.finds_lens = true;
+  }
+};
+
+TEST_F(ThinnedRound, ThatFindsAllIsEnough) {
+  colmap_.Leaves(kMapper, 1, "0", Disturbed(survey_));
+  Run();
+  ASSERT_EQ(colmap_.NumCalls(kMapper), 1);
+  EXPECT_NE(colmap_.Value(kMapper, 1, "database_path"), job_.database_path.string());
+  EXPECT_TRUE(fs::exists(dir_ / "logs" / "mapper_1_thinned.log"));
+  // The points come from all matches.
+  EXPECT_EQ(colmap_.Value("point_triangulator", 1, "database_path"), job_.database_path.string());
+  EXPECT_EQ(NamesIn("0").size(), 10u);
+  EXPECT_FALSE(fs::exists(job_.output_path / "trial_thinned"));
+}
+
+TEST_F(ThinnedRound, ThatLeavesPicturesOutIsComparedWithAllMatches) {
+  colmap_.Leaves(kMapper, 1, "0", Part(1, 7));
+  colmap_.Leaves(kMapper, 2, "0", survey_);
+  Run();
+  EXPECT_EQ(colmap_.Value(kMapper, 2, "database_path"), job_.database_path.string());
+  EXPECT_EQ(NamesIn("0").size(), 10u);
+}
+
+TEST_F(ThinnedRound, ThatFailsCostsNothing) {
+  colmap_.Ends(kMapper, 1, "bundle adjustment failed", 1);
+  colmap_.Leaves(kMapper, 2, "0", survey_);
+  Run();
+  EXPECT_EQ(NamesIn("0").size(), 10u);
 }
 
 class GlobalRound : public RunMapperTest {

@@ -1,0 +1,102 @@
+#include "colmap_seapoint/mapping/trial_plans.h"
+
+#include <map>
+#include <optional>
+
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
+#include "colmap_seapoint/mapping/lens_pilot.h"
+#include "colmap_seapoint/tracks/thinned_database.h"
+
+namespace colmap_seapoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kMinModelSize[] = "Mapper.min_model_size";
+constexpr char kNumBeginnings[] = "Mapper.init_num_trials";
+constexpr char kRefineDistortion[] = "Mapper.ba_refine_extra_params";
+constexpr char kGlobalRefineDistortion[] = "GlobalMapper.ba_refine_extra_params";
+constexpr char kRefineFocal[] = "Mapper.ba_refine_focal_length";
+
+// Makes the thinned database; where there are many pictures, with the lens that some of them tell.
+void PrepareThinned(const ColmapProgram& colmap, const MapperJob& job, const fs::path& folder,
+                    TrialPlan* plan) {
+  fs::create_directories(folder / "pilot");
+  WriteThinnedDatabase(ColmapDatabase(job.database_path, ColmapDatabase::Mode::kReadOnly,
+                                      ColmapDatabase::Check::kNone),
+                       {}, plan->database_path);
+  if (job.pictures.size() < kMinPicturesOfPilot) return;
+  const std::map<uint32_t, Camera> lenses =
+      LearnLenses(colmap, CallOf(colmap, job, *plan, folder / "pilot", "1_pilot"),
+                  job.adjusts_principal_point, job.num_threads);
+  if (lenses.empty()) return;
+  ColmapDatabase thinned(plan->database_path, ColmapDatabase::Mode::kReadWrite,
+                         ColmapDatabase::Check::kNone);
+  for (const auto& [id, camera] : lenses) SetCalibration(&thinned, camera);
+  thinned.Finish();
+  if (colmap.HasMapperOption(kRefineFocal)) plan->options[kRefineFocal] = "0";
+}
+
+// COLMAP's way with pictures that a small model leaves over: to drop it and begin at another
+// pair, but for few of its 200 times. nullopt where that would be no other trial, or the user
+// chose.
+std::optional<MapperOptions> LargerModels(const ColmapProgram& colmap, const MapperJob& job) {
+  if (!job.finds_lens || job.first_round.count(kNumBeginnings) > 0) return std::nullopt;
+  for (const char* name : {kMinModelSize, kNumBeginnings}) {
+    if (!colmap.HasMapperOption(name)) return std::nullopt;
+  }
+  MapperOptions options = job.first_round;
+  options[kMinModelSize] = "10";
+  options[kNumBeginnings] = "2";
+  return options;
+}
+
+}  // namespace
+
+std::vector<TrialPlan> PlanFirstRound(const ColmapProgram& colmap, const MapperJob& job,
+                                      const fs::path& folder) {
+  std::vector<TrialPlan> plans;
+  const auto add = [&](const std::string& name, const MapperOptions& options, bool holds) {
+    plans.push_back({name, kMapper, job.database_path, options, holds, false, {}});
+  };
+  if (job.global_round) {
+    add("_global", *job.global_round, true);
+    plans.back().command = kGlobalMapper;
+  }
+  if (job.thins_matches) {
+    add("_thinned", job.initial_pair_round.value_or(job.first_round), job.finds_lens);
+    plans.back().database_path = folder / "database.db";
+    plans.back().prepare = [&colmap, &job, folder](TrialPlan* plan) {
+      PrepareThinned(colmap, job, folder, plan);
+    };
+  }
+  if (job.initial_pair_round) add("_initial_pair", *job.initial_pair_round, job.finds_lens);
+  add("", job.first_round, job.finds_lens);
+  plans.back().must_succeed = true;
+  add(kFreeDistortion, job.first_round, false);
+  if (const auto larger = LargerModels(colmap, job)) add("_larger_models", *larger, false);
+  return plans;
+}
+
+std::vector<TrialPlan> PlanLaterRound(const MapperJob& job) {
+  return {{"", kMapper, job.database_path, job.later_rounds, job.finds_lens, false, {}}};
+}
+
+MapperCall CallOf(const ColmapProgram& colmap, const MapperJob& job, const TrialPlan& plan,
+                  const fs::path& output_path, const std::string& log_name) {
+  MapperCall call;
+  call.command = plan.command;
+  call.database_path = plan.database_path;
+  call.image_path = job.image_path;
+  call.output_path = output_path;
+  call.options = plan.options;
+  const char* refine = plan.command == kMapper ? kRefineDistortion : kGlobalRefineDistortion;
+  if (plan.holds_distortion && colmap.HasMapperOption(refine)) call.options[refine] = "0";
+  call.num_pictures = job.pictures.size();
+  call.log_path = job.log_folder / ("mapper_" + log_name + ".log");
+  call.must_succeed = plan.must_succeed;
+  return call;
+}
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,39 @@
+// What a round of the mapper tries, one after the other, until a trial is good enough.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "colmap_seapoint/mapping/mapper_process.h"
+#include "colmap_seapoint/mapping/run_mapper.h"
+
+namespace colmap_seapoint {
+
+inline constexpr char kMapper[] = "mapper";
+inline constexpr char kFreeDistortion[] = "_free_distortion";
+
+struct TrialPlan {
+  std::string name;  // of its folder and log, behind the round's
+  std::string command = kMapper;
+  std::filesystem::path database_path;
+  MapperOptions options;
+  bool holds_distortion = false;
+  bool must_succeed = false;                // when no trial before it found a model
+  std::function<void(TrialPlan*)> prepare;  // before it is run; may be empty
+};
+
+// The global mapper, thinned matches, an initial pair of ours (where the job asks for them), COLMAP
+// as it is, with a free distortion, and with small models dropped. `folder`: exists; what thinned
+// matches need is put there when their turn comes. The plans refer to `colmap` and `job`.
+std::vector<TrialPlan> PlanFirstRound(const ColmapProgram& colmap, const MapperJob& job,
+                                      const std::filesystem::path& folder);
+
+std::vector<TrialPlan> PlanLaterRound(const MapperJob& job);
+
+// The plan as a call of the mapper, with the distortion held if that is planned. All pictures.
+MapperCall CallOf(const ColmapProgram& colmap, const MapperJob& job, const TrialPlan& plan,
+                  const std::filesystem::path& output_path, const std::string& log_name);
+
+}  // namespace colmap_seapoint
