@@ -23,9 +23,7 @@ constexpr double kMaxFocalRatio = 2.0;  // up or down
 constexpr double kMaxFocalRatioOnceMore = 1.2;
 
 // What became of the first camera, as one line for the user.
-std::string Outcome(const SparseModel& before, const SparseModel& after) {
-  const Camera& was = before.cameras.begin()->second;
-  const Camera& is = after.cameras.begin()->second;
+std::string Outcome(const Camera& was, const Camera& is) {
   char text[200];
   std::snprintf(text, sizeof(text),
                 "focal length %.1f -> %.1f px, principal point (%.1f, %.1f) -> (%.1f, %.1f)",
@@ -41,8 +39,9 @@ size_t NumObservations(const PosedImage& image) {
 }
 
 // The model as everybody will read it: rotations are made unit ones again by every reading.
-SparseModel WrittenAndRead(const fs::path& folder, const SparseModel& model) {
+SparseModel WrittenAndRead(const fs::path& folder, SparseModel model) {
   WriteSparseModelBinary(folder, model);
+  model = SparseModel();
   return ReadSparseModel(folder);
 }
 
@@ -96,32 +95,34 @@ double ReprojectionError(const SparseModel& model) {
   return count == 0 ? 0 : std::sqrt(sum / static_cast<double>(count));
 }
 
+// A model takes gigabytes where there are thousands of pictures: at most two are held at a time.
 LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
                           const fs::path& folder) {
-  const SparseModel before = ReadSparseModel(folder);
   LensAdjustment result;
+  result.model = ReadSparseModel(folder);
+  const Camera lens_before = result.model.cameras.begin()->second;
   LensLimits limits = {kMaxFocalRatio, job.frees_principal_point, false, job.num_threads};
-  const SoundAdjustment first = AdjustSoundly(before, limits);
+  SoundAdjustment first = AdjustSoundly(result.model, limits);
   const bool is_sound = first.fault.empty();
   result.distortion_is_sound = is_sound || !job.frees_distortion;
-  result.model = is_sound ? WrittenAndRead(folder, first.model) : before;
+  if (is_sound) result.model = WrittenAndRead(folder, std::move(first.model));
 
   const TriangulationJob triangulation_job = {job.database_path, job.image_path, job.options,
                                               job.log_path};
-  const Triangulation triangulation =
-      Retriangulate(colmap, triangulation_job, folder, result.model);
-  if (triangulation.model) result.model = WrittenAndRead(folder, *triangulation.model);
+  Triangulation triangulation = Retriangulate(colmap, triangulation_job, folder, result.model);
+  if (triangulation.model) result.model = WrittenAndRead(folder, *std::move(triangulation.model));
 
   SoundAdjustment second;
   if (is_sound) {
-    const std::optional<SparseModel> measured = MeasuredAgain(result.model, job);
+    if (auto measured = MeasuredAgain(result.model, job)) result.model = *std::move(measured);
     limits.max_focal_ratio = kMaxFocalRatioOnceMore;
     limits.rejects_outliers = true;
-    second = AdjustSoundly(measured.value_or(result.model), limits);
-    if (second.fault.empty()) result.model = WrittenAndRead(folder, second.model);
+    second = AdjustSoundly(result.model, limits);
+    result.model = second.fault.empty() ? WrittenAndRead(folder, std::move(second.model))
+                                        : ReadSparseModel(folder);
   }
-  result.outcome = Outcome(before, result.model) + Refusal("lens", first.fault) +
-                   Refusal("triangulation", triangulation.fault) +
+  result.outcome = Outcome(lens_before, result.model.cameras.begin()->second) +
+                   Refusal("lens", first.fault) + Refusal("triangulation", triangulation.fault) +
                    Refusal("second adjustment", second.fault);
   return result;
 }

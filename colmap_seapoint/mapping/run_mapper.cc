@@ -45,6 +45,7 @@ void Rename(const fs::path& from, const fs::path& to) {
 struct Trial {
   fs::path folder;
   std::string command;  // of COLMAP
+  fs::path triangulation_path;
   MapperOptions options;
   bool holds_distortion = false;
   std::vector<fs::path> models;     // those of enough points
@@ -141,6 +142,7 @@ class MapperRounds {
     if (num_models_ > 0) call.pictures.assign(missing_.begin(), missing_.end());
     call.num_pictures = missing_.size();
     trial.command = call.command;
+    trial.triangulation_path = plan.triangulation_path;
     trial.options = call.options;
     trial.holds_distortion = call.options != plan.options;
     const MapperEnd end = RunMapperProcess(colmap_, call);
@@ -170,7 +172,7 @@ class MapperRounds {
 
   AdjustmentJob JobOf(const Trial& trial, const std::string& log) const {
     AdjustmentJob job;
-    job.database_path = job_.database_path;
+    job.database_path = trial.triangulation_path;
     job.image_path = job_.image_path;
     // The triangulator knows the mapper's options, and none of the global mapper's.
     job.options = trial.command == kMapper ? trial.options : job_.first_round;

@@ -1,5 +1,6 @@
 #include "colmap_seapoint/mapping/trial_plans.h"
 
+#include <algorithm>
 #include <map>
 #include <optional>
 
@@ -19,13 +20,28 @@ constexpr char kRefineDistortion[] = "Mapper.ba_refine_extra_params";
 constexpr char kGlobalRefineDistortion[] = "GlobalMapper.ba_refine_extra_params";
 constexpr char kRefineFocal[] = "Mapper.ba_refine_focal_length";
 
+// Observations that the last adjustment takes in, whose memory grows with them; a picture has a few
+// thousand, and several hundred hold it as well.
+constexpr size_t kMaxObservations = 1000000;
+constexpr size_t kManyObservations = 2000;  // a picture
+
 // Makes the thinned database; where there are many pictures, with the lens that some of them tell.
 void PrepareThinned(const ColmapProgram& colmap, const MapperJob& job, const fs::path& folder,
                     TrialPlan* plan) {
   fs::create_directories(folder / "pilot");
-  WriteThinnedDatabase(ColmapDatabase(job.database_path, ColmapDatabase::Mode::kReadOnly,
-                                      ColmapDatabase::Check::kNone),
-                       {}, plan->database_path);
+  {
+    const ColmapDatabase database(job.database_path, ColmapDatabase::Mode::kReadOnly,
+                                  ColmapDatabase::Check::kNone);
+    WriteThinnedDatabase(database, {}, plan->database_path);
+    const size_t num_observations = kMaxObservations / std::max<size_t>(1, job.pictures.size());
+    if (num_observations < kManyObservations) {
+      plan->triangulation_path = folder / "triangulation.db";
+      ThinningOptions options;
+      options.observations_per_picture =
+          std::max(options.observations_per_picture, static_cast<int>(num_observations));
+      WriteThinnedDatabase(database, options, plan->triangulation_path);
+    }
+  }
   if (job.pictures.size() < kMinPicturesOfPilot) return;
   const std::map<uint32_t, Camera> lenses =
       LearnLenses(colmap, CallOf(colmap, job, *plan, folder / "pilot", "1_pilot"),
@@ -58,7 +74,8 @@ std::vector<TrialPlan> PlanFirstRound(const ColmapProgram& colmap, const MapperJ
                                       const fs::path& folder) {
   std::vector<TrialPlan> plans;
   const auto add = [&](const std::string& name, const MapperOptions& options, bool holds) {
-    plans.push_back({name, kMapper, job.database_path, options, holds, false, {}});
+    plans.push_back(
+        {name, kMapper, job.database_path, job.database_path, options, holds, false, {}});
   };
   if (job.global_round) {
     add("_global", *job.global_round, true);
@@ -80,7 +97,14 @@ std::vector<TrialPlan> PlanFirstRound(const ColmapProgram& colmap, const MapperJ
 }
 
 std::vector<TrialPlan> PlanLaterRound(const MapperJob& job) {
-  return {{"", kMapper, job.database_path, job.later_rounds, job.finds_lens, false, {}}};
+  return {{"",
+           kMapper,
+           job.database_path,
+           job.database_path,
+           job.later_rounds,
+           job.finds_lens,
+           false,
+           {}}};
 }
 
 MapperCall CallOf(const ColmapProgram& colmap, const MapperJob& job, const TrialPlan& plan,

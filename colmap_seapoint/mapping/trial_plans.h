@@ -18,6 +18,7 @@ struct TrialPlan {
   std::string name;  // of its folder and log, behind the round's
   std::string command = kMapper;
   std::filesystem::path database_path;
+  std::filesystem::path triangulation_path;  // the database whose matches become the points
   MapperOptions options;
   bool holds_distortion = false;
   bool must_succeed = false;                // when no trial before it found a model
