@@ -19,7 +19,7 @@ struct MapperJob {
   std::filesystem::path database_path;
   std::filesystem::path image_path;
   std::filesystem::path output_path;  // the caller's own: emptied; holds 0/, 1/ ... afterwards
-  std::filesystem::path log_folder;   // gets mapper_1.log, mapper_2.log ...
+  std::filesystem::path log_folder;   // gets mapper_1_thinned.log, mapper_1.log ...
   // Where given, the global mapper is tried first; the first round proper is then left out when
   // that registers all pictures.
   std::optional<MapperOptions> global_round;

@@ -114,17 +114,17 @@ TEST_F(Ownership, EveryNameOfTheWorkspaceIsProtected) {
 TEST_F(Ownership, NothingIsWrittenThroughALink) {
   WriteBytes(folder_ / "precious.log", kPrecious);
   fs::create_directories(folder_ / "ws/report");
-  fs::create_symlink(folder_ / "precious.log", folder_ / "ws/report/mapper_1.log");
+  fs::create_symlink(folder_ / "precious.log", folder_ / "ws/report/mapper_1_thinned.log");
   ExpectRefusal(Reconstruct("ws"), "report: was not made by", "--workspace_path");
   // Put there later.
   fs::remove_all(folder_ / "ws");
   ExpectDone(Reconstruct("ws"));
-  fs::remove(folder_ / "ws/report/mapper_1.log");
+  fs::remove(folder_ / "ws/report/mapper_1_thinned.log");
   fs::remove(folder_ / "ws/state/mapper.json");
-  fs::create_symlink(folder_ / "precious.log", folder_ / "ws/report/mapper_1.log");
+  fs::create_symlink(folder_ / "precious.log", folder_ / "ws/report/mapper_1_thinned.log");
   ExpectDone(Reconstruct("ws"));
   EXPECT_EQ(ReadBytes(folder_ / "precious.log"), kPrecious);
-  EXPECT_FALSE(fs::is_symlink(folder_ / "ws/report/mapper_1.log"));
+  EXPECT_FALSE(fs::is_symlink(folder_ / "ws/report/mapper_1_thinned.log"));
 }
 
 // The user's own files, put beside ours.

@@ -46,9 +46,10 @@ class Reconstructor : public testing::Test {
 TEST_F(Reconstructor, RunsTheWholeChain) {
   const CliResult result = Reconstruct("model");
   ASSERT_EQ(result.exit_code, 0) << result.Text();
-  for (const char* file : {"database.db", "sparse/0/images.bin", "dense/0/fused.ply",
-                           "dense/0/fused.ply.vis", "dense/0/pairs.csv", "dense/0/run.json",
-                           "report/summary.txt", "report/run.json", "report/mapper_1.log"}) {
+  for (const char* file :
+       {"database.db", "sparse/0/images.bin", "dense/0/fused.ply", "dense/0/fused.ply.vis",
+        "dense/0/pairs.csv", "dense/0/run.json", "report/summary.txt", "report/run.json",
+        "report/mapper_1_thinned.log"}) {
     EXPECT_TRUE(fs::exists(Workspace() / file)) << file;
   }
   EXPECT_FALSE(fs::exists(Workspace() / "sparse.tmp"));
@@ -87,23 +88,23 @@ TEST_F(Reconstructor, MapperOptionsAreHandedOnOrRefused) {
   EXPECT_EQ(result.exit_code, 2) << result.Text();
   EXPECT_NE(result.LastErrorLine().find("Mapper.min_model_sice"), std::string::npos);
   EXPECT_FALSE(fs::exists(Workspace()));
-  result = Reconstruct("model", {"--Mapper.min_model_size", "3"});
+  result = Reconstruct("model", {"--Mapper.min_model_size", "4"});
   EXPECT_EQ(result.exit_code, 0) << result.Text();
-  EXPECT_EQ(Report()["options"]["Mapper.min_model_size"], "3");
+  EXPECT_EQ(Report()["options"]["Mapper.min_model_size"], "4");
 }
 
 TEST_F(Reconstructor, FieldQualityTakesTheGlobalMapperThatFindsAll) {
   ASSERT_EQ(Reconstruct("global", {"--quality", "field"}).exit_code, 0);
   EXPECT_EQ(Report()["images_used"], 6);
   EXPECT_TRUE(fs::exists(Workspace() / "report/mapper_1_global.log"));
-  EXPECT_FALSE(fs::exists(Workspace() / "report/mapper_1.log"));
+  EXPECT_FALSE(fs::exists(Workspace() / "report/mapper_1_thinned.log"));
 }
 
 TEST_F(Reconstructor, WhatTheGlobalMapperLeavesOutTheOtherMayFind) {
   ASSERT_EQ(Reconstruct("global_partial", {"--quality", "field"}).exit_code, 0);
   EXPECT_EQ(Report()["images_used"], 6);
   EXPECT_TRUE(fs::exists(Workspace() / "report/mapper_1_global.log"));
-  EXPECT_TRUE(fs::exists(Workspace() / "report/mapper_1.log"));
+  EXPECT_TRUE(fs::exists(Workspace() / "report/mapper_1_thinned.log"));
 }
 
 TEST_F(Reconstructor, QualityPresetsWhatIsNotGiven) {
@@ -158,7 +159,7 @@ TEST_F(Reconstructor, EveryModelBecomesACloud) {
   EXPECT_TRUE(fs::exists(Workspace() / "dense/0/fused.ply"));
   EXPECT_TRUE(fs::exists(Workspace() / "dense/1/fused.ply"));
   // When a later run finds one model only, the second cloud does not stay behind.
-  ASSERT_EQ(Reconstruct("model", {"--Mapper.min_model_size", "3"}).exit_code, 0);
+  ASSERT_EQ(Reconstruct("model", {"--Mapper.min_model_size", "4"}).exit_code, 0);
   EXPECT_TRUE(fs::exists(Workspace() / "dense/0/fused.ply"));
   EXPECT_FALSE(fs::exists(Workspace() / "dense/1"));
 }

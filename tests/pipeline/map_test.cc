@@ -193,7 +193,7 @@ TEST_F(MapPicturesTest, LeavesModelsOfAllMatchedPictures) {
   EXPECT_GT(model.points3D.size(), 100u);
   EXPECT_FALSE(fs::exists(Space().sparse / "1"));
   EXPECT_FALSE(fs::exists(Space().sparse.string() + ".tmp"));
-  EXPECT_TRUE(fs::exists(Space().report / "mapper_1.log"));
+  EXPECT_TRUE(fs::exists(Space().report / "mapper_1_thinned.log"));
 }
 
 TEST_F(MapPicturesTest, MapsOnce) {
