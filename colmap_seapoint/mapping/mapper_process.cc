@@ -17,6 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// What COLMAP says, from 3.8 on, when it ends with 1 because it found none.
+constexpr char kNoModel[] = "failed to create sparse model";
+
 // How many pictures the present model has, from a line as "Registering image #3 (4)" (COLMAP 3.8)
 // or "Registering frame #3 (num_reg_frames=4)" (later versions); nullopt for other lines.
 std::optional<int> NumRegistered(const std::string& line) {
@@ -54,8 +57,10 @@ MapperEnd RunMapperProcess(const ColmapProgram& colmap, const MapperCall& call) 
   Progress progress("Pictures registered by colmap mapper",
                     static_cast<int64_t>(call.num_pictures));
   std::string last_line;
+  bool says_no_model = false;
   const auto read_line = [&](const std::string& line) {
     if (!line.empty()) last_line = line;
+    says_no_model = says_no_model || line.find(kNoModel) != std::string::npos;
     if (const auto count = NumRegistered(line)) progress.Update(*count);
   };
   const SubprocessResult result =
@@ -66,8 +71,9 @@ MapperEnd RunMapperProcess(const ColmapProgram& colmap, const MapperCall& call) 
   }
   MapperEnd end;
   end.text = result.Text() + ", '" + last_line + "'";
-  const bool found_model = !ListModels(call.output_path).empty();
-  end.is_usable = result.signal_number == 0 && (result.exit_code == 0 || !found_model);
+  const bool found_none =
+      ListModels(call.output_path).empty() && (says_no_model || !call.must_succeed);
+  end.is_usable = result.signal_number == 0 && (result.exit_code == 0 || found_none);
   if (end.is_usable) return end;
   const std::string finding = "the mapper failed (" + end.text + ")";
   if (call.must_succeed) {

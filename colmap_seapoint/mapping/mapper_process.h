@@ -26,9 +26,10 @@ struct MapperEnd {
   std::string text;        // how it ended, and its last line
 };
 
-// Runs it. That it finds no model is no failure, though COLMAP 3.8 exits with 1 for it. When it
-// fails otherwise: Error if it must succeed, else a warning, since what earlier runs have found
-// stands. Throws UsageError when it refuses an option's value.
+// Runs it. That it finds no model is no failure, though COLMAP exits with 1 for it and says so.
+// When it fails otherwise: Error if it must succeed, for a full disk, say, must not lead to other
+// models than the next run would find; else a warning, since what earlier runs have found stands.
+// Throws UsageError when it refuses an option's value.
 MapperEnd RunMapperProcess(const ColmapProgram& colmap, const MapperCall& call);
 
 // Model folders below `sparse`, in natural order; empty when there is no such folder.

@@ -83,6 +83,7 @@ std::vector<TrialPlan> PlanFirstRound(const ColmapProgram& colmap, const MapperJ
   }
   if (job.thins_matches) {
     add("_thinned", job.initial_pair_round.value_or(job.first_round), job.finds_lens);
+    plans.back().must_succeed = true;
     plans.back().database_path = folder / "database.db";
     plans.back().prepare = [&colmap, &job, folder](TrialPlan* plan) {
       PrepareThinned(colmap, job, folder, plan);

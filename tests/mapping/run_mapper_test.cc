@@ -348,11 +348,19 @@ TEST_F(ThinnedRound, ThatLeavesPicturesOutIsComparedWithAllMatches) {
   EXPECT_EQ(NamesIn("0").size(), 10u);
 }
 
-TEST_F(ThinnedRound, ThatFailsCostsNothing) {
-  colmap_.Ends(kMapper, 1, "bundle adjustment failed", 1);
+TEST_F(ThinnedRound, ThatFindsNothingCostsNothing) {
+  colmap_.Ends(kMapper, 1, "ERROR: failed to create sparse model", 1);
   colmap_.Leaves(kMapper, 2, "0", survey_);
   Run();
   EXPECT_EQ(NamesIn("0").size(), 10u);
+}
+
+// The next run, on a disk with room, would find other models.
+TEST_F(ThinnedRound, ThatFailsEndsTheRun) {
+  colmap_.Ends(kMapper, 1, "No space left on device", 1);
+  colmap_.Leaves(kMapper, 2, "0", survey_);
+  EXPECT_THROW(Run(), Error);
+  EXPECT_EQ(colmap_.NumCalls(kMapper), 1);
 }
 
 class GlobalRound : public RunMapperTest {
