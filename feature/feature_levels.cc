@@ -22,7 +22,10 @@ void Append(const std::vector<T>& more, std::vector<T>* all) {
 }  // namespace
 
 size_t NumFinest(const Features& features) {
-  const auto is_coarse = [](const SeaPoint& point) { return point.scale != 1; };
+  if (features.points.empty()) return 0;
+  const auto is_coarse = [finest = features.points[0].scale](const SeaPoint& point) {
+    return point.scale > finest;
+  };
   return static_cast<size_t>(
       std::find_if(features.points.begin(), features.points.end(), is_coarse) -
       features.points.begin());

@@ -11,7 +11,7 @@ namespace colmap_seapoint {
 // Between neighbouring levels (paper 4).
 inline constexpr double kLevelScale = 1.4142135623730951;
 
-// How many SeaPoints of the picture's own size stand first; all of them where it has one level.
+// How many SeaPoints of the finest level stand first; all of them where there is one level.
 size_t NumFinest(const Features& features);
 
 // Where the coarsest levels begin that follow each other without a gap: 0 for a picture whose

@@ -168,7 +168,8 @@ class LoopPairsTest : public MatchPairsTest {
     std::mt19937 random(5);
     for (int i = 0; i < 2 * kOneWay; ++i) {
       const int place = i < kOneWay ? i : 2 * kOneWay - 1 - i;
-      const Features features = MakeFeatures(150, 100 + static_cast<unsigned>(place));
+      Features features = MakeFeatures(150, 100 + static_cast<unsigned>(place));
+      for (SeaPoint& point : features.points) point.scale = 1;  // of one level
       const uint32_t id = AddImage(&database_, "img" + std::to_string(i) + ".jpg", camera_id_);
       WriteFeatures(&database_, id, features, "picture");
     }
