@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "colmap_seapoint/adjustment/bundle_adjustment.h"
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/timer.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "colmap_seapoint/mapping/adjust_lens.h"
-#include "colmap_seapoint/adjustment/bundle_adjustment.h"
 #include "colmap_seapoint/remeasuring/remeasure_observations.h"
 #include "examples/benchmarks/poses/observation_errors.h"
 #include "examples/subcommands.h"
