@@ -10,7 +10,8 @@ TEST_F(Faults, AColmapThatHangsIsStopped) {
   options.environment = {{"FAKE_COLMAP_SECONDS", "50"}, {"FAKE_COLMAP_PID", pid_file}};
   const CliResult result = Run(Reconstruct(), options, {"--colmap_timeout", "1"});
   ExpectFailure(result, "has not ended within 1.0 s");
-  EXPECT_NE(result.LastErrorLine().find("mapper_1_thinned.log"), std::string::npos) << result.Text();
+  EXPECT_NE(result.LastErrorLine().find("mapper_1_thinned.log"), std::string::npos)
+      << result.Text();
   EXPECT_NE(result.LastErrorLine().find("run the same command again"), std::string::npos);
   EXPECT_FALSE(ProcessIsAlive(std::stoi(ReadBytes(pid_file))));
   // It goes on where it was stopped.
