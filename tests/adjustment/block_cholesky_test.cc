@@ -5,6 +5,8 @@
 #include <Eigen/Cholesky>
 #include <random>
 
+#include "tests/adjustment/dense_matrix.h"
+
 namespace colmap_seapoint {
 namespace {
 
@@ -25,20 +27,6 @@ BlockMatrix RandomMatrix(uint32_t size) {
     matrix.row_begin.push_back(matrix.columns.size());
   }
   return matrix;
-}
-
-Eigen::MatrixXd Dense(const BlockMatrix& matrix) {
-  const auto size = static_cast<Eigen::Index>(kBlockSize * matrix.NumRows());
-  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size, size);
-  for (size_t i = 0; i < matrix.NumRows(); ++i) {
-    for (size_t k = matrix.row_begin[i]; k < matrix.row_begin[i + 1]; ++k) {
-      const auto row = static_cast<Eigen::Index>(kBlockSize * i);
-      const Eigen::Index column = kBlockSize * matrix.columns[k];
-      dense.block<kBlockSize, kBlockSize>(row, column) = matrix.blocks[k];
-      dense.block<kBlockSize, kBlockSize>(column, row) = matrix.blocks[k].transpose();
-    }
-  }
-  return dense;
 }
 
 TEST(BlockCholeskyTest, SolvesAsTheDenseOneDoes) {

@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include "tests/adjustment/dense_matrix.h"
 #include "tests/mapping/exact_survey.h"
 
 namespace colmap_seapoint {
@@ -18,20 +19,6 @@ SparseModel TwoLenses() {
   model.cameras[2] = second;
   for (size_t i = 0; i < model.images.size(); i += 2) model.images[i].camera_id = 2;
   return Disturbed(model);
-}
-
-Eigen::MatrixXd Dense(const BlockMatrix& matrix) {
-  const auto size = static_cast<Eigen::Index>(kBlockSize * matrix.NumRows());
-  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size, size);
-  for (size_t i = 0; i < matrix.NumRows(); ++i) {
-    for (size_t k = matrix.row_begin[i]; k < matrix.row_begin[i + 1]; ++k) {
-      const auto row = static_cast<Eigen::Index>(kBlockSize * i);
-      const Eigen::Index column = kBlockSize * matrix.columns[k];
-      dense.block<kBlockSize, kBlockSize>(row, column) = matrix.blocks[k];
-      dense.block<kBlockSize, kBlockSize>(column, row) = matrix.blocks[k].transpose();
-    }
-  }
-  return dense;
 }
 
 TEST(ReducedSystemTest, IsTheDenseSchurComplement) {
