@@ -41,15 +41,22 @@ Part CoarsePart(const Camera& camera, const Features& features) {
   return part;
 }
 
-MatchedPair MatchParts(const Part& part1, const Part& part2, const SeaPointMatchingOptions& options,
-                       double min_overlap_share) {
-  MatchedPair pair =
-      MatchFeatures(part1.camera, part1.features, part2.camera, part2.features, options);
-  if (min_overlap_share > 0 && OverlapShare(part1.features.points, part2.features.points,
-                                            pair.geometry.inliers) < min_overlap_share) {
+MatchedPair MatchOneLevel(const Camera& camera1, const Features& features1, const Camera& camera2,
+                          const Features& features2, const SeaPointMatchingOptions& options,
+                          double min_overlap_share) {
+  MatchedPair pair = MatchFeatures(camera1, features1, camera2, features2, options);
+  if (min_overlap_share > 0 &&
+      OverlapShare(features1.points, features2.points, pair.geometry.inliers) < min_overlap_share) {
     pair.geometry = TwoViewGeometry();
     pair.geometry.config = TwoViewConfig::kDegenerate;
   }
+  return pair;
+}
+
+MatchedPair MatchParts(const Part& part1, const Part& part2, const SeaPointMatchingOptions& options,
+                       double min_overlap_share) {
+  MatchedPair pair = MatchOneLevel(part1.camera, part1.features, part2.camera, part2.features,
+                                   options, min_overlap_share);
   for (FeatureMatches* matches : {&pair.matches, &pair.geometry.inliers}) {
     for (FeatureMatch& match : *matches) {
       match.idx1 += part1.begin;
@@ -83,6 +90,9 @@ bool HasLevels(const Features& features) { return NumFinest(features) < features
 MatchedPair MatchLevels(const Camera& camera1, const Features& features1, const Camera& camera2,
                         const Features& features2, const SeaPointMatchingOptions& options,
                         double min_overlap_share) {
+  if (!HasLevels(features1) && !HasLevels(features2)) {  // nearly all pairs: nothing is copied
+    return MatchOneLevel(camera1, features1, camera2, features2, options, min_overlap_share);
+  }
   MatchedPair pair = MatchParts(FinestPart(camera1, features1), FinestPart(camera2, features2),
                                 options, min_overlap_share);
   if (!HasLevels(features1) || !HasLevels(features2)) return pair;
