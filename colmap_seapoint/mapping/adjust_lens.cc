@@ -19,7 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kFirmObservations = 100;
-constexpr double kMaxFocalRatio = 2.0;  // up or down
 constexpr double kMaxFocalRatioOnceMore = 1.2;
 
 // What became of the first camera, as one line for the user.
@@ -101,7 +100,9 @@ LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
   LensAdjustment result;
   result.model = ReadSparseModel(folder);
   const Camera lens_before = result.model.cameras.begin()->second;
-  LensLimits limits = {kMaxFocalRatio, job.frees_principal_point, false, job.num_threads};
+  LensLimits limits;
+  limits.frees_principal_point = job.frees_principal_point;
+  limits.num_threads = job.num_threads;
   SoundAdjustment first = AdjustSoundly(result.model, limits);
   const bool is_sound = first.fault.empty();
   result.distortion_is_sound = is_sound || !job.frees_distortion;

@@ -15,7 +15,6 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr uint32_t kPilotPictures = 60;
-constexpr double kMaxFocalRatio = 2;
 
 std::vector<std::string> PilotPictures(const ColmapDatabase& database) {
   const std::vector<DatabaseImage> images = ReadImages(database);
@@ -60,8 +59,10 @@ std::map<uint32_t, Camera> LearnLenses(const ColmapProgram& colmap, MapperCall c
   if (call.pictures.empty() || !RunMapperProcess(colmap, call).is_usable) return {};
   const SparseModel model = LargestModel(call.output_path);
   if (2 * model.images.size() < call.pictures.size()) return {};
-  const SoundAdjustment adjusted =
-      AdjustSoundly(model, {kMaxFocalRatio, frees_principal_point, false, num_threads});
+  LensLimits limits;
+  limits.frees_principal_point = frees_principal_point;
+  limits.num_threads = num_threads;
+  const SoundAdjustment adjusted = AdjustSoundly(model, limits);
   if (!adjusted.fault.empty()) return {};
   std::map<uint32_t, Camera> lenses;
   for (const PosedImage& image : adjusted.model.images) {
