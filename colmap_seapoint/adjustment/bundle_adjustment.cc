@@ -12,7 +12,8 @@
 namespace colmap_seapoint {
 namespace {
 
-// Pixels. Nothing is measured better.
+// Pixels. However well most observations are measured, the last loss is not made narrower than for
+// such errors: those of the others still count.
 constexpr double kMinResidualSigma = 0.05;
 
 std::map<uint32_t, LensFreedom> FreedomOfLenses(const BundleAdjustmentOptions& options,
