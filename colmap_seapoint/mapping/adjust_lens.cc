@@ -6,11 +6,15 @@
 #include <optional>
 #include <utility>
 
+#include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "colmap_seapoint/mapping/retriangulate.h"
 #include "colmap_seapoint/mapping/sound_adjustment.h"
 #include "colmap_seapoint/remeasuring/remeasure_observations.h"
+#include "colmap_seapoint/reposing/match_agreement.h"
+#include "colmap_seapoint/reposing/repose_pictures.h"
 #include "feature/remeasuring/patch_matching.h"
 
 namespace colmap_seapoint {
@@ -71,6 +75,18 @@ std::optional<SparseModel> MeasuredAgain(const SparseModel& model, const Adjustm
   return std::nullopt;
 }
 
+ColmapDatabase OpenedToRead(const fs::path& path) {
+  return ColmapDatabase(path, ColmapDatabase::Mode::kReadOnly, ColmapDatabase::Check::kNone);
+}
+
+// The pictures that stand wrong are brought to where they belong, in the folder too.
+void BringBack(const fs::path& database_path, const fs::path& folder, SparseModel* model) {
+  const std::vector<std::string> moved = ReposePictures(OpenedToRead(database_path), model);
+  if (moved.empty()) return;
+  for (const std::string& name : moved) LogInfo(name + " stood wrong and is posed again");
+  *model = WrittenAndRead(folder, std::move(*model));
+}
+
 std::string Refusal(const char* what, const std::string& fault) {
   return fault.empty() ? "" : std::string("; ") + what + " refused: " + fault;
 }
@@ -107,6 +123,7 @@ LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
   const bool is_sound = first.fault.empty();
   result.distortion_is_sound = is_sound || !job.frees_distortion;
   if (is_sound) result.model = WrittenAndRead(folder, std::move(first.model));
+  BringBack(job.database_path, folder, &result.model);
 
   const TriangulationJob triangulation_job = {job.database_path, job.image_path, job.options,
                                               job.log_path};
@@ -122,6 +139,10 @@ LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
     result.model = second.fault.empty() ? WrittenAndRead(folder, std::move(second.model))
                                         : ReadSparseModel(folder);
   }
+  result.num_contradicted =
+      MisplacedPictures(CheckMatches(OpenedToRead(job.database_path), result.model),
+                        result.model.images.size())
+          .size();
   result.outcome = Outcome(lens_before, result.model.cameras.begin()->second) +
                    Refusal("lens", first.fault) + Refusal("triangulation", triangulation.fault) +
                    Refusal("second adjustment", second.fault);

@@ -52,11 +52,16 @@ struct Trial {
   std::vector<std::string> lenses;  // what became of each model's lens
   bool lenses_are_sound = true;
   std::set<std::string> pictures;
-  double worst_error = 0;  // of a model, root mean square, pixels
+  size_t num_contradicted = 0;  // of them, by their own matches
+  double worst_error = 0;       // of a model, root mean square, pixels
 };
 
+size_t NumPosedWell(const Trial& trial) {
+  return trial.pictures.size() - std::min(trial.pictures.size(), trial.num_contradicted);
+}
+
 bool IsBetter(const Trial& a, const Trial& b) {
-  if (a.pictures.size() != b.pictures.size()) return a.pictures.size() > b.pictures.size();
+  if (NumPosedWell(a) != NumPosedWell(b)) return NumPosedWell(a) > NumPosedWell(b);
   return a.worst_error < b.worst_error;
 }
 
@@ -130,7 +135,7 @@ class MapperRounds {
 
   // Of a large survey a few pictures may show nothing that ties them: they are the later rounds'.
   bool IsDoubtful(const Trial& trial) const {
-    const size_t num_missing = missing_.size() - std::min(missing_.size(), trial.pictures.size());
+    const size_t num_missing = missing_.size() - std::min(missing_.size(), NumPosedWell(trial));
     return num_missing > missing_.size() / kPicturesPerLost || !trial.lenses_are_sound;
   }
 
@@ -162,6 +167,7 @@ class MapperRounds {
       LensAdjustment adjustment = AdjustLens(colmap_, JobOf(*trial, log), path);
       lens = adjustment.outcome;
       trial->lenses_are_sound = trial->lenses_are_sound && adjustment.distortion_is_sound;
+      trial->num_contradicted += adjustment.num_contradicted;
       model = std::move(adjustment.model);
     }
     for (const PosedImage& image : model.images) trial->pictures.insert(image.name);

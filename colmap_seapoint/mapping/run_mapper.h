@@ -13,7 +13,7 @@ namespace colmap_seapoint {
 
 // Raise it whenever the same database and options give other models than before
 // (tests/mapping/mapper_version_test.cc watches).
-inline constexpr char kMapperVersion[] = "12";
+inline constexpr char kMapperVersion[] = "13";
 
 struct MapperJob {
   std::filesystem::path database_path;
@@ -42,11 +42,11 @@ struct MapperJob {
 // finds one: the models of all rounds are numbered on. When the first round leaves pictures over,
 // or a lens that cannot be adjusted soundly, it is tried with a free distortion too, then in
 // COLMAP's way of dropping small models and beginning anew, and the better trial counts: the one
-// with more pictures, then the one with the smaller error. The trials of the global mapper, of
-// thinned matches and of the given initial pair are compared in the same way; one picture in 50 may
-// be left over before another trial is made. Models of fewer than 50 points are not taken. Throws
-// Error when the mapper fails or no round finds a model, UsageError when it refuses an option's
-// value.
+// with more pictures that their own matches do not contradict, then the one with the smaller error.
+// The trials of the global mapper, of thinned matches and of the given initial pair are compared in
+// the same way; one picture in 50 may be left over before another trial is made. Models of fewer
+// than 50 points are not taken. Throws Error when the mapper fails or no round finds a model,
+// UsageError when it refuses an option's value.
 void RunMapper(const ColmapProgram& colmap, const MapperJob& job);
 
 }  // namespace colmap_seapoint

@@ -22,7 +22,7 @@ constexpr char kRefineFocal[] = "Mapper.ba_refine_focal_length";
 
 // Observations that the last adjustment takes in, whose memory grows with them; a picture has a few
 // thousand, and several hundred hold it as well.
-constexpr size_t kMaxObservations = 1000000;
+constexpr size_t kMaxObservations = 1600000;
 constexpr size_t kManyObservations = 2000;  // a picture
 
 // Makes the thinned database; where there are many pictures, with the lens that some of them tell.

@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
 #include "tests/io/test_files.h"
 #include "tests/mapping/exact_survey.h"
 #include "tests/mapping/scripted_colmap.h"
+#include "tests/mapping/survey_database.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -20,6 +23,8 @@ constexpr char kTriangulator[] = "point_triangulator";
 
 class AdjustLensTest : public testing::Test {
  protected:
+  void SetUp() override { WriteSurveyDatabase(exact_, dir_ / "database.db"); }
+
   LensAdjustment Adjust(const SparseModel& model, bool frees_distortion = true,
                         bool frees_principal_point = true) {
     WriteSparseModelBinary(folder_, model);
@@ -70,6 +75,36 @@ TEST_F(AdjustLensTest, TriangulatesWithTheAdjustedLens) {
   const LensAdjustment adjustment = Adjust(Disturbed(exact_));
   EXPECT_LT(ReprojectionError(adjustment.model), 1e-6);
   EXPECT_LT(LargestDifference(adjustment.model.cameras.at(1), ExactLens()), 1e-5);
+}
+
+TEST_F(AdjustLensTest, APictureThatStandsWrongIsBroughtBackBeforeTheTriangulation) {
+  SparseModel start = Disturbed(exact_);
+  // The triangulator of these tests leaves all as it is: so do the points.
+  start.images[4].cam_from_world.translation += Eigen::Vector3d(0.3, 0.5, 0);
+  const LensAdjustment adjustment = Adjust(start);
+  EXPECT_EQ(adjustment.num_contradicted, 0u);
+  const Eigen::Vector3d now = adjustment.model.images[4].cam_from_world.OriginInSource() -
+                              adjustment.model.images[3].cam_from_world.OriginInSource();
+  const Eigen::Vector3d exact = exact_.images[4].cam_from_world.OriginInSource() -
+                                exact_.images[3].cam_from_world.OriginInSource();
+  EXPECT_LT((now - exact).norm(), 0.02);
+}
+
+TEST_F(AdjustLensTest, APictureThatNoPoseMakesAgreeWithItsMatchesIsCounted) {
+  {
+    ColmapDatabase database(dir_ / "database.db", ColmapDatabase::Mode::kReadWrite);
+    for (const ImagePair& pair : ReadVerifiedPairs(database)) {
+      if (pair.first != 5 && pair.second != 5) continue;
+      TwoViewGeometry geometry = ReadTwoViewGeometry(database, pair);
+      // Every match goes to its neighbour's place.
+      for (size_t i = 1; i < geometry.inliers.size(); ++i) {
+        std::swap(geometry.inliers[i - 1].idx1, geometry.inliers[i].idx1);
+      }
+      WriteMatches(&database, pair.first, pair.second, geometry.inliers, geometry);
+    }
+    database.Finish();
+  }
+  EXPECT_EQ(Adjust(Disturbed(exact_)).num_contradicted, 1u);
 }
 
 TEST_F(AdjustLensTest, AFailedTriangulationIsSaidAndTheLensIsStillFound) {

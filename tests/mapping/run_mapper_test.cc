@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
+#include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/mapping/mapper_process.h"
 #include "tests/io/test_files.h"
@@ -32,6 +34,8 @@ class RunMapperTest : public testing::Test {
     job_.first_round = {{"Mapper.num_threads", "1"}};
     job_.later_rounds = {{"Mapper.num_threads", "1"}, {"Mapper.min_model_size", "4"}};
     job_.finds_lens = false;
+    // Without matches: nothing contradicts a pose.
+    ColmapDatabase(job_.database_path, ColmapDatabase::Mode::kCreateIfMissing);
     for (const PosedImage& image : survey_.images) job_.pictures.push_back(image.name);
   }
 
@@ -238,6 +242,27 @@ TEST_F(RunMapperTest, OfTwoTrialsTheOneWithMorePicturesCounts) {
   colmap_.Leaves(kMapper, 2, "0", Part(1, 8));
   Run();
   EXPECT_EQ(NamesIn("0").size(), 9u);
+}
+
+TEST_F(RunMapperTest, PicturesThatStandWrongAreBroughtBackAndCount) {
+  fs::remove(job_.database_path);
+  WriteSurveyDatabase(survey_, job_.database_path);
+  job_.finds_lens = true;
+  // All pictures, of which four stand where none of their matches put them, with a free distortion.
+  SparseModel torn = Part(1, 10);
+  for (size_t i = 6; i < 10; ++i) {
+    for (uint64_t& id : torn.images[i].point3D_ids) id = kNoPoint3D;
+    torn.images[i].cam_from_world.translation += Eigen::Vector3d(0.4, 0.4 * double(i), 1);
+  }
+  for (auto& [id, point] : torn.points3D) {
+    point.track.erase(std::remove_if(point.track.begin(), point.track.end(),
+                                     [](const auto& e) { return e.image_id > 6; }),
+                      point.track.end());
+  }
+  colmap_.Leaves(kMapper, 1, "0", Part(1, 8));
+  colmap_.Leaves(kMapper, 2, "0", torn);
+  Run();
+  EXPECT_EQ(NamesIn("0").size(), 10u);
 }
 
 TEST_F(RunMapperTest, OfTrialsWithAsManyPicturesTheSmallerErrorCounts) {
