@@ -9,7 +9,7 @@
 namespace colmap_seapoint {
 
 // `measured`: by image_idx. Points whose track has fewer than two observations left go, and with
-// them what observes them. `unreadable` stays empty.
+// them what observes them. `of_other_size` stays empty.
 Remeasurement ApplyMeasurements(const SparseModel& model,
                                 const std::vector<ImageMeasurements>& measured);
 

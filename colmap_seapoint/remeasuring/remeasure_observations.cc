@@ -4,7 +4,6 @@
 #include <optional>
 #include <utility>
 
-#include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/remeasuring/apply_measurements.h"
 #include "colmap_seapoint/remeasuring/surface_patch.h"
@@ -31,7 +30,7 @@ class Remeasuring {
         read_(read),
         tracks_(MakeTrackTable(model)),
         patches_(tracks_.point3D_ids.size()),
-        is_unreadable_(model.images.size(), 0) {}
+        is_of_other_size_(model.images.size(), 0) {}
 
   Remeasurement Run() {
     const auto num_images = static_cast<int64_t>(model_.images.size());
@@ -41,22 +40,19 @@ class Remeasuring {
                 [&](int64_t i) { measured[static_cast<size_t>(i)] = MeasureImage(i); });
     Remeasurement result = ApplyMeasurements(model_, measured);
     for (size_t i = 0; i < model_.images.size(); ++i) {
-      if (is_unreadable_[i]) result.unreadable.push_back(model_.images[i].name);
+      if (is_of_other_size_[i]) result.of_other_size.push_back(model_.images[i].name);
     }
     return result;
   }
 
  private:
-  // Empty when the picture cannot be read.
+  // Empty when the picture has not its camera's size.
   GrayImage Read(size_t image_idx) {
     const PosedImage& image = model_.images[image_idx];
     const Camera& camera = model_.cameras.at(image.camera_id);
-    try {
-      GrayImage picture = read_(image);
-      if (picture.width == camera.width && picture.height == camera.height) return picture;
-    } catch (const Error&) {
-    }
-    is_unreadable_[image_idx] = 1;
+    GrayImage picture = read_(image);
+    if (picture.width == camera.width && picture.height == camera.height) return picture;
+    is_of_other_size_[image_idx] = 1;
     return {};
   }
 
@@ -109,7 +105,7 @@ class Remeasuring {
     const PosedImage& image = model_.images[image_idx];
     const std::vector<Observation>& observations = tracks_.observations[image_idx];
     const bool is_needed =
-        !is_unreadable_[image_idx] &&
+        !is_of_other_size_[image_idx] &&
         std::any_of(observations.begin(), observations.end(),
                     [&](const Observation& observation) { return IsToBeMeasured(observation); });
     const GrayImage picture = is_needed ? Read(image_idx) : GrayImage();
@@ -166,7 +162,7 @@ class Remeasuring {
   const GrayPictureReader& read_;
   TrackTable tracks_;
   std::vector<std::optional<KeptPatch>> patches_;  // by point_idx
-  std::vector<uint8_t> is_unreadable_;             // by image_idx
+  std::vector<uint8_t> is_of_other_size_;          // by image_idx
 };
 
 }  // namespace

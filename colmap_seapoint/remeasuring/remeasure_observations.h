@@ -31,7 +31,7 @@ struct RemeasuringOptions {
 struct RemeasuringCounts {
   size_t references = 0;  // stay as they are: what the others are measured against
   size_t moved = 0;
-  size_t unmeasured = 0;  // stay as they are: at a picture's border, or no picture to read
+  size_t unmeasured = 0;  // stay as they are: at a picture's border, or in one of another size
   // Taken out: see PatchMatchStatus for the first three.
   size_t unlike = 0;
   size_t diverged = 0;
@@ -45,17 +45,18 @@ struct RemeasuringCounts {
 struct Remeasurement {
   SparseModel model;
   RemeasuringCounts counts;
-  std::vector<std::string> unreadable;  // names of pictures, in the order of the model
+  std::vector<std::string> of_other_size;  // names of pictures, in the order of the model
 };
 
-// Reads a picture of the model, grey; called for each at most twice, from several threads. An Error
-// leaves the picture's observations as they are, and so does a size that is not its camera's.
+// Reads a picture of the model, grey; called for each at most twice, from several threads. A size
+// that is not its camera's leaves the picture's observations as they are.
 using GrayPictureReader = std::function<GrayImage(const PosedImage&)>;
 
 // The model with its observations moved or taken out, and without the points that have fewer than
 // two left; poses, points' places and lenses stay, as does what has no point. The same bytes for
-// any number of threads. Memory: one picture a thread, about 360 bytes a point and 40 an
-// observation. About 12 microseconds an observation, decoding of pictures aside.
+// any number of threads. What `read` throws is thrown on: a disk that is gone must not lead to
+// other poses than the next run finds. Memory: one picture a thread, about 360 bytes a point and 40
+// an observation. About 12 microseconds an observation, decoding of pictures aside.
 Remeasurement RemeasureObservations(const RemeasuringOptions& options, const SparseModel& model,
                                     const GrayPictureReader& read);
 

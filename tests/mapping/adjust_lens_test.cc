@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/colmap/database_matches.h"
 #include "tests/io/test_files.h"
@@ -23,7 +24,10 @@ constexpr char kTriangulator[] = "point_triangulator";
 
 class AdjustLensTest : public testing::Test {
  protected:
-  void SetUp() override { WriteSurveyDatabase(exact_, dir_ / "database.db"); }
+  void SetUp() override {
+    WriteSurveyDatabase(exact_, dir_ / "database.db");
+    WriteTinyPictures(exact_, dir_ / "images");
+  }
 
   LensAdjustment Adjust(const SparseModel& model, bool frees_distortion = true,
                         bool frees_principal_point = true) {
@@ -88,6 +92,11 @@ TEST_F(AdjustLensTest, APictureThatStandsWrongIsBroughtBackBeforeTheTriangulatio
   const Eigen::Vector3d exact = exact_.images[4].cam_from_world.OriginInSource() -
                                 exact_.images[3].cam_from_world.OriginInSource();
   EXPECT_LT((now - exact).norm(), 0.02);
+}
+
+TEST_F(AdjustLensTest, APictureThatCannotBeReadAnyMoreEndsIt) {
+  std::filesystem::remove(dir_ / "images" / "img3.jpg");
+  EXPECT_THROW(Adjust(Disturbed(exact_)), Error);
 }
 
 TEST_F(AdjustLensTest, APictureThatNoPoseMakesAgreeWithItsMatchesIsCounted) {

@@ -106,6 +106,7 @@ std::string Rounds() {
   job.database_path = dir / "database.db";
   WriteSurveyDatabase(survey, job.database_path);
   job.image_path = dir / "images";
+  WriteTinyPictures(survey, job.image_path);
   job.output_path = dir / "sparse";
   job.log_folder = dir / "logs";
   for (const PosedImage& image : survey.images) job.pictures.push_back(image.name);

@@ -36,6 +36,7 @@ class RunMapperTest : public testing::Test {
     job_.finds_lens = false;
     // Without matches: nothing contradicts a pose.
     ColmapDatabase(job_.database_path, ColmapDatabase::Mode::kCreateIfMissing);
+    WriteTinyPictures(survey_, job_.image_path);
     for (const PosedImage& image : survey_.images) job_.pictures.push_back(image.name);
   }
 

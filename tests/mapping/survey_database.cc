@@ -7,6 +7,7 @@
 #include "colmap_seapoint/io/colmap/database_features.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/colmap/database_matches.h"
+#include "colmap_seapoint/io/image/image_file.h"
 
 namespace colmap_seapoint {
 
@@ -43,6 +44,11 @@ void WriteSurveyDatabase(const SparseModel& survey, const std::filesystem::path&
     WriteMatches(&database, pair.first, pair.second, matches, geometry);
   }
   transaction.Commit();
+}
+
+void WriteTinyPictures(const SparseModel& survey, const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  for (const PosedImage& image : survey.images) WriteImage(folder / image.name, GrayImage(8, 8));
 }
 
 }  // namespace colmap_seapoint

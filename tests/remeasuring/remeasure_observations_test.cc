@@ -184,23 +184,27 @@ TEST(RemeasureObservations, KeepsOneObservationOfAPointInAPicture) {
   EXPECT_LT(ErrorsOfMoved(TheWorld(), doubled, measured.model).after, 0.05);
 }
 
-TEST(RemeasureObservations, LeavesWhatItCannotRead) {
+TEST(RemeasureObservations, APictureThatCannotBeReadEndsIt) {
+  for (const uint32_t bad : {1u, 2u, 4u}) {
+    const auto read = [&](const PosedImage& image) -> GrayImage {
+      if (image.image_id == bad) throw Error(image.name, "is damaged", "copy it again");
+      return ReadPicture(image);
+    };
+    EXPECT_THROW(RemeasureObservations({}, TheWorld().Model(), read), Error);
+  }
+}
+
+TEST(RemeasureObservations, LeavesWhatIsOfAnotherSize) {
   const SparseModel& before = TheWorld().Model();
   const RemeasuringOptions options;
   const auto check = [&](const GrayPictureReader& read, uint32_t image_id) {
     const Remeasurement measured = RemeasureObservations(options, before, read);
     ExpectConsistent(measured.model);
-    EXPECT_EQ(measured.unreadable, std::vector<std::string>{before.images[image_id - 1].name});
+    EXPECT_EQ(measured.of_other_size, std::vector<std::string>{before.images[image_id - 1].name});
     EXPECT_EQ(measured.model.images[image_id - 1].points2D, before.images[image_id - 1].points2D);
     EXPECT_GT(measured.counts.moved, 0u);
   };
   for (const uint32_t bad : {1u, 2u, 4u}) {
-    check(
-        [&](const PosedImage& image) -> GrayImage {
-          if (image.image_id == bad) throw Error(image.name, "is damaged", "copy it again");
-          return ReadPicture(image);
-        },
-        bad);
     check(
         [&](const PosedImage& image) -> GrayImage {
           return image.image_id == bad ? GrayImage(100, 100) : ReadPicture(image);

@@ -76,9 +76,9 @@ void PrintCounts(const Remeasurement& measured) {
   const RemeasuringCounts& c = measured.counts;
   std::printf(
       "%zu references, %zu moved, %zu unmeasured; out: %zu unlike, %zu diverged, %zu unsure, "
-      "%zu elsewhere, %zu twice, %zu alone; %zu points out; %zu pictures unreadable\n",
+      "%zu elsewhere, %zu twice, %zu alone; %zu points out; %zu pictures of another size\n",
       c.references, c.moved, c.unmeasured, c.unlike, c.diverged, c.unsure, c.elsewhere, c.twice,
-      c.alone, c.removed_points, measured.unreadable.size());
+      c.alone, c.removed_points, measured.of_other_size.size());
 }
 
 int Measure(const std::vector<std::string>& arguments) {
