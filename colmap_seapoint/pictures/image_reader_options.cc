@@ -16,10 +16,12 @@ void ImageReaderOptions::Bind(OptionTable* table) {
   table->SetListing(kCameraPresetOption, CameraPresetList());
   table->Add("ImageReader.camera_model", &camera_model,
              "camera model of new cameras: " + CameraModelNames(), "COLMAP (there SIMPLE_RADIAL)");
-  table->Add("ImageReader.camera_params", &camera_params,
-             "parameters of new cameras, separated by commas, in pixels; empty = focal length from "
-             "EXIF or guessed, no distortion",
-             "COLMAP");
+  table->Add(
+      "ImageReader.camera_params", &camera_params,
+      "parameters of new cameras, separated by commas, in pixels, which automatic_reconstructor "
+      "then holds unless --Mapper.ba_refine_* is given; empty = focal length from EXIF or "
+      "guessed, no distortion",
+      "COLMAP");
   table->Add("ImageReader.single_camera", &single_camera, "all pictures share one camera",
              "COLMAP");
   table->Add("ImageReader.single_camera_per_folder", &single_camera_per_folder,

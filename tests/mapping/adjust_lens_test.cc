@@ -38,6 +38,14 @@ class AdjustLensTest : public testing::Test {
            ReadBytes(folder_ / "points3D.bin");
   }
 
+  // What a triangulation is refused for.
+  SparseModel WithAPictureLost() const {
+    SparseModel model = exact_;
+    model.images.pop_back();
+    for (auto& [id, point] : model.points3D) point.track.clear();
+    return model;
+  }
+
   bool holds_lens_ = false;
   TempDir dir_;
   const fs::path folder_ = dir_ / "model";
@@ -80,10 +88,7 @@ TEST_F(AdjustLensTest, AFailedTriangulationLeavesNothingToUse) {
 }
 
 TEST_F(AdjustLensTest, ARefusedTriangulationIsSaidAndTheLensIsStillFound) {
-  SparseModel poor = exact_;
-  poor.images.pop_back();
-  for (auto& [id, point] : poor.points3D) point.track.clear();
-  colmap_.Leaves(kTriangulator, 1, "", poor);
+  colmap_.Leaves(kTriangulator, 1, "", WithAPictureLost());
   const LensAdjustment adjustment = Adjust(Disturbed(exact_));
   EXPECT_TRUE(adjustment.is_usable);
   EXPECT_NE(adjustment.outcome.find("; triangulation refused: pictures were lost"),
@@ -117,6 +122,7 @@ TEST_F(AdjustLensTest, AnUnsoundLensIsRefused) {
   Camera lens = ExactLens();
   lens.params[2] += 90;
   const SparseModel start = Disturbed(ExactSurvey(lens, 5));
+  colmap_.Leaves(kTriangulator, 1, "", WithAPictureLost());
   const LensAdjustment adjustment = Adjust(start);
   EXPECT_FALSE(adjustment.distortion_is_sound);
   EXPECT_NE(adjustment.outcome.find("; lens refused: the principal point moved too far"),
