@@ -168,7 +168,7 @@ int RunMapper(bool is_global, std::map<std::string, std::string> options) {
 // The points that are there are the best that it finds.
 int RunTriangulator(std::map<std::string, std::string> options) {
   std::filesystem::copy(options["--input_path"], options["--output_path"],
-                        std::filesystem::copy_options::overwrite_existing);
+                        std::filesystem::copy_options::recursive);
   return EXIT_SUCCESS;
 }
 
