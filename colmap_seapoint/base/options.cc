@@ -64,6 +64,12 @@ std::string CheckChoice(const OptionInfo& option, const std::string& value) {
 template <typename Number>
 std::string SetNumber(const OptionInfo& option, const std::string& text, Number* target) {
   Number value{};
+  // A switch of COLMAP's, which writes true and false into its project files, with a third value.
+  const bool is_switch = option.min == -1 && option.max == 1;
+  if (is_switch && (text == "true" || text == "false")) {
+    *target = text == "true" ? 1 : 0;
+    return "";
+  }
   if (!ParseNumber(text, &value)) {
     const std::string kind = std::is_integral_v<Number> ? "a whole number" : "a number";
     return Sentence(option, text,
@@ -109,32 +115,38 @@ void Append(std::vector<OptionInfo>* options, OptionInfo option) {
 
 void OptionTable::Add(const std::string& name, bool* value, const std::string& help,
                       const std::string& origin) {
-  Append(&options_, {name, value, help, origin, 0, 1, {}, false, ""});
+  Append(&options_, {name, value, help, origin, 0, 1, {}, false, "", false, ""});
 }
 
 void OptionTable::Add(const std::string& name, int* value, const std::string& help,
                       const std::string& origin, int min, int max) {
   const double lowest = static_cast<double>(min), highest = static_cast<double>(max);
-  Append(&options_, {name, value, help, origin, lowest, highest, {}, false, ""});
+  Append(&options_, {name, value, help, origin, lowest, highest, {}, false, "", false, ""});
 }
 
 void OptionTable::Add(const std::string& name, double* value, const std::string& help,
                       const std::string& origin, double min, double max) {
-  Append(&options_, {name, value, help, origin, min, max, {}, false, ""});
+  Append(&options_, {name, value, help, origin, min, max, {}, false, "", false, ""});
 }
 
 void OptionTable::Add(const std::string& name, std::string* value, const std::string& help,
                       const std::string& origin, std::vector<std::string> choices) {
-  Append(&options_, {name, value, help, origin, 0, 0, std::move(choices), false, ""});
+  Append(&options_, {name, value, help, origin, 0, 0, std::move(choices), false, "", false, ""});
 }
 
 void OptionTable::MarkOutput(const std::string& name) {
   for (OptionInfo& option : options_) option.is_output |= option.name == name;
 }
 
+void OptionTable::SetListing(const std::string& name, const std::string& listing) {
+  for (OptionInfo& option : options_) {
+    if (option.name == name) option.listing = listing;
+  }
+}
+
 void OptionTable::AddRequired(const std::string& name, std::string* value,
                               const std::string& help) {
-  Append(&options_, {name, value, help, "COLMAP", 0, 0, {}, true, ""});
+  Append(&options_, {name, value, help, "COLMAP", 0, 0, {}, true, "", false, ""});
 }
 
 const OptionInfo* OptionTable::Find(const std::string& name) const {
@@ -186,6 +198,21 @@ OptionList OptionValues(const OptionTable& table) {
     values.emplace_back(option.name, OptionValueText(option.target));
   }
   return values;
+}
+
+size_t EditDistance(const std::string& a, const std::string& b) {
+  std::vector<size_t> row(b.size() + 1);
+  for (size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (size_t i = 1; i <= a.size(); ++i) {
+    size_t diagonal = row[0];
+    row[0] = i;
+    for (size_t j = 1; j <= b.size(); ++j) {
+      const size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({substituted, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row[b.size()];
 }
 
 }  // namespace colmap_seapoint

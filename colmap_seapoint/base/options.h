@@ -22,6 +22,7 @@ struct OptionInfo {
   bool required = false;
   std::string default_value;  // text, taken when the option was added
   bool is_output = false;     // of a path: something is written there
+  std::string listing;        // printed for the value "list" or "help", instead of a run; may be ""
 };
 
 class OptionTable {
@@ -36,6 +37,7 @@ class OptionTable {
            const std::string& origin, std::vector<std::string> choices = {});
   // What is named by the option is written. Every other option "..._path" names what is only read.
   void MarkOutput(const std::string& name);
+  void SetListing(const std::string& name, const std::string& listing);
   void AddRequired(const std::string& name, std::string* value, const std::string& help);
 
   const std::vector<OptionInfo>& Options() const { return options_; }
@@ -72,7 +74,11 @@ struct ForeignOptions {
   std::map<std::string, std::string>* values = nullptr;  // "Mapper.min_model_size" -> "5"
 };
 
-// The option that presets others.
+// The options that preset others.
 inline constexpr char kQualityOption[] = "quality";
+inline constexpr char kCameraPresetOption[] = "camera_preset";
+
+// How many letters must be changed, added or left out: to guess which word a user meant.
+size_t EditDistance(const std::string& a, const std::string& b);
 
 }  // namespace colmap_seapoint

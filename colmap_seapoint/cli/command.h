@@ -34,8 +34,8 @@ struct Command {
   // Both work on the same options struct: bind() first, parse, then run().
   std::function<void(OptionTable*)> bind;
   std::function<CommandResult()> run;
-  // Called once kQualityOption is set and before the other options are: sets the defaults that
-  // follow from the quality.
+  // Called once kQualityOption and kCameraPresetOption are set and before the other options are:
+  // sets the defaults that follow from them.
   std::function<void()> preset;
   ForeignOptions foreign;
 };

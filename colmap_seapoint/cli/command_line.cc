@@ -46,22 +46,6 @@ po::options_description Describe(const Command& command, const OptionTable& tabl
   return description;
 }
 
-// How many letters must be changed, added or left out.
-size_t EditDistance(const std::string& a, const std::string& b) {
-  std::vector<size_t> row(b.size() + 1);
-  for (size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (size_t i = 1; i <= a.size(); ++i) {
-    size_t diagonal = row[0];
-    row[0] = i;
-    for (size_t j = 1; j <= b.size(); ++j) {
-      const size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({substituted, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row[b.size()];
-}
-
 [[noreturn]] void RefuseUnknown(const Command& command, const OptionTable& table,
                                 const std::string& where, const std::string& name) {
   std::string nearest;
@@ -164,6 +148,19 @@ void PrintWrapped(const std::string& text, std::ostream& out) {
 
 }  // namespace
 
+std::string ListingAskedFor(const std::vector<std::string>& arguments, const OptionTable& table) {
+  for (size_t i = 0; i < arguments.size(); ++i) {
+    const OptionInfo* option = table.Find(LongOptionName(arguments[i]));
+    if (option == nullptr || option->listing.empty()) continue;
+    const size_t equals = arguments[i].find('=');
+    const bool is_apart = equals == std::string::npos;
+    if (is_apart && i + 1 == arguments.size()) continue;
+    const std::string value = is_apart ? arguments[i + 1] : arguments[i].substr(equals + 1);
+    if (value == "list" || value == "help") return option->listing;
+  }
+  return "";
+}
+
 bool ParseCommandLine(const Command& command, const std::vector<std::string>& arguments,
                       OptionTable* table) {
   OptionTexts texts = ParseArguments(command, *table, arguments);
@@ -183,8 +180,8 @@ bool ParseCommandLine(const Command& command, const std::vector<std::string>& ar
     if (!problem.empty()) throw UsageError(problem);
   };
   if (command.preset) {
-    if (const auto quality = texts.find(kQualityOption); quality != texts.end()) {
-      set(quality->first, quality->second);
+    for (const char* name : {kQualityOption, kCameraPresetOption}) {
+      if (const auto preset = texts.find(name); preset != texts.end()) set(name, preset->second);
     }
     command.preset();
   }

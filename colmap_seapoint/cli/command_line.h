@@ -21,6 +21,10 @@ inline constexpr char kProjectPath[] = "project_path";
 bool ParseCommandLine(const Command& command, const std::vector<std::string>& arguments,
                       OptionTable* table);
 
+// What the first "--option list" or "--option help" asks for, of an option that has a listing; ""
+// when none does. The other options need not be there, nor right.
+std::string ListingAskedFor(const std::vector<std::string>& arguments, const OptionTable& table);
+
 // What `-h` and the man page say of one option: what it is for, legal values, origin. One line.
 std::string OptionHelp(const OptionInfo& option);
 

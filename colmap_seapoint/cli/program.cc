@@ -71,6 +71,10 @@ void ApplyRunOptions(const OptionTable& table) {
 ExitCode RunCommand(const Command& command, const std::vector<std::string>& arguments) {
   OptionTable table;
   command.bind(&table);
+  if (const std::string listing = ListingAskedFor(arguments, table); !listing.empty()) {
+    std::cout << listing << std::flush;
+    return kDone;
+  }
   if (!ParseCommandLine(command, arguments, &table)) {
     PrintCommandHelp(command, table, std::cout);
     return kDone;

@@ -118,6 +118,7 @@ LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
   const Camera lens_before = result.model.cameras.begin()->second;
   LensLimits limits;
   limits.frees_principal_point = job.frees_principal_point;
+  limits.holds_lens = job.holds_lens;
   limits.num_threads = job.num_threads;
   SoundAdjustment first = AdjustSoundly(result.model, limits);
   const bool is_sound = first.fault.empty();
@@ -126,8 +127,12 @@ LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
   BringBack(job.database_path, folder, &result.model);
 
   const TriangulationJob triangulation_job = {job.database_path, job.image_path, job.options,
-                                              job.log_path};
+                                              job.log_path, job.must_succeed};
   Triangulation triangulation = Retriangulate(colmap, triangulation_job, folder, result.model);
+  if (triangulation.has_failed) {
+    result.is_usable = false;
+    return result;
+  }
   if (triangulation.model) result.model = WrittenAndRead(folder, *std::move(triangulation.model));
 
   SoundAdjustment second;

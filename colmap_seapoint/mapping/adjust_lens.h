@@ -20,13 +20,16 @@ struct AdjustmentJob {
   std::filesystem::path image_path;
   MapperOptions options;           // as the mapper had them
   std::filesystem::path log_path;  // without "_triangulation.log"
+  bool must_succeed = false;       // the triangulation (retriangulate.h)
+  bool holds_lens = false;         // poses and points alone are adjusted
   bool frees_distortion = true;    // false: the mapper had it free already
   bool frees_principal_point = true;
   int num_threads = 1;
 };
 
 struct LensAdjustment {
-  SparseModel model;  // as `folder` holds it afterwards
+  bool is_usable = true;  // false: the triangulation failed, and nothing else counts
+  SparseModel model;      // as `folder` holds it afterwards
   // The distortion was freed here and the result taken, or the mapper had it free already.
   bool distortion_is_sound = true;
   // Pictures whose verified matches contradict the pose that they have in the end

@@ -21,16 +21,20 @@ struct TriangulationJob {
   std::filesystem::path image_path;
   MapperOptions options;           // as the mapper had them; its error limits, where given, stay
   std::filesystem::path log_path;  // without "_triangulation.log"
+  bool must_succeed = false;
 };
 
 struct Triangulation {
   std::optional<SparseModel> model;  // as COLMAP wrote it; nullopt: it cannot be used
   std::string fault;                 // why it cannot be used, else ""
+  bool has_failed = false;           // COLMAP ended with an error, or left no whole model
 };
 
 // `folder` holds `before` and stays as it is; COLMAP works in <folder>.triangulated meanwhile. The
-// result is used when it has the same pictures and at least half as many points. Throws Error when
-// COLMAP cannot be started or the log cannot be written. The same result every time: one thread.
+// result is used when it has the same pictures and at least half as many points. That it finds
+// little is no failure; when it fails otherwise (a full disk, killed): Error if it must succeed,
+// else a warning, as with the mapper (mapper_process.h). Throws Error when COLMAP cannot be started
+// or the log cannot be written. The same result every time: one thread.
 Triangulation Retriangulate(const ColmapProgram& colmap, const TriangulationJob& job,
                             const std::filesystem::path& folder, const SparseModel& before);
 

@@ -48,6 +48,7 @@ struct Trial {
   fs::path triangulation_path;
   MapperOptions options;
   bool holds_distortion = false;
+  bool must_succeed = false;
   std::vector<fs::path> models;     // those of enough points
   std::vector<std::string> lenses;  // what became of each model's lens
   bool lenses_are_sound = true;
@@ -121,10 +122,10 @@ class MapperRounds {
     Trial trial;
     std::vector<TrialPlan> plans = round == 1
                                        ? PlanFirstRound(colmap_, job_, folder_ / "trial_thinned")
-                                       : PlanLaterRound(job_);
+                                       : PlanLaterRound(colmap_, job_);
     for (TrialPlan& plan : plans) {
       if (!IsDoubtful(trial)) break;
-      if (plan.name == kFreeDistortion && !trial.holds_distortion) continue;
+      if (plan.frees_distortion && !trial.holds_distortion) continue;
       if (plan.prepare) plan.prepare(&plan);
       plan.must_succeed = plan.must_succeed && trial.models.empty();
       const Trial other = RunTrial(std::to_string(round) + plan.name, plan);
@@ -143,29 +144,40 @@ class MapperRounds {
     Trial trial;
     trial.folder = folder_ / ("trial_" + name);
     fs::create_directories(trial.folder);
-    MapperCall call = CallOf(colmap_, job_, plan, trial.folder, name);
+    MapperCall call = CallOf(job_, plan, trial.folder, name);
     if (num_models_ > 0) call.pictures.assign(missing_.begin(), missing_.end());
     call.num_pictures = missing_.size();
     trial.command = call.command;
     trial.triangulation_path = plan.triangulation_path;
     trial.options = call.options;
-    trial.holds_distortion = call.options != plan.options;
+    trial.holds_distortion = plan.holds_distortion;
+    trial.must_succeed = plan.must_succeed;
     const MapperEnd end = RunMapperProcess(colmap_, call);
     end_ = end.text;
     if (!end.is_usable) return trial;
     for (const fs::path& model : ModelsOfTheirOwn(ListModels(trial.folder))) {
-      AddModel(model, name, &trial);
+      if (!AddModel(model, name, &trial)) return WithoutModels(std::move(trial));
     }
     return trial;
   }
 
-  void AddModel(const fs::path& path, const std::string& trial_name, Trial* trial) const {
+  // As if the mapper had failed.
+  static Trial WithoutModels(Trial trial) {
+    trial.models.clear();
+    trial.lenses.clear();
+    trial.pictures.clear();
+    return trial;
+  }
+
+  // False when what had to be done to it failed.
+  bool AddModel(const fs::path& path, const std::string& trial_name, Trial* trial) const {
     SparseModel model = ReadSparseModel(path);
     std::string lens;
-    if (job_.finds_lens) {
+    if (job_.lens != LensRule::kLeaveToMapper) {
       const std::string log = "lens_" + trial_name + "_" + path.filename().string();
       LensAdjustment adjustment = AdjustLens(colmap_, JobOf(*trial, log), path);
-      lens = adjustment.outcome;
+      if (!adjustment.is_usable) return false;
+      lens = (job_.lens == LensRule::kHold ? "held as given; " : "") + adjustment.outcome;
       trial->lenses_are_sound = trial->lenses_are_sound && adjustment.distortion_is_sound;
       trial->num_contradicted += adjustment.num_contradicted;
       model = std::move(adjustment.model);
@@ -174,6 +186,7 @@ class MapperRounds {
     trial->worst_error = std::max(trial->worst_error, ReprojectionError(model));
     trial->models.push_back(path);
     trial->lenses.push_back(lens);
+    return true;
   }
 
   AdjustmentJob JobOf(const Trial& trial, const std::string& log) const {
@@ -183,6 +196,8 @@ class MapperRounds {
     // The triangulator knows the mapper's options, and none of the global mapper's.
     job.options = trial.command == kMapper ? trial.options : job_.first_round;
     job.log_path = job_.log_folder / log;
+    job.must_succeed = trial.must_succeed;
+    job.holds_lens = job_.lens == LensRule::kHold;
     job.frees_distortion = trial.holds_distortion;
     job.frees_principal_point = job_.adjusts_principal_point;
     job.num_threads = job_.num_threads;

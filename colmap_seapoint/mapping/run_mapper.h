@@ -15,6 +15,13 @@ namespace colmap_seapoint {
 // (tests/mapping/mapper_version_test.cc watches).
 inline constexpr char kMapperVersion[] = "13";
 
+// Whose the lens is.
+enum class LensRule {
+  kFind,           // ours to find: held while models grow, then adjusted (adjust_lens.h)
+  kHold,           // given: held by the mapper and by us, who adjust the rest
+  kLeaveToMapper,  // the user decides what the mapper refines, and its models stay as they are
+};
+
 struct MapperJob {
   std::filesystem::path database_path;
   std::filesystem::path image_path;
@@ -30,9 +37,7 @@ struct MapperJob {
   std::optional<MapperOptions> initial_pair_round;
   MapperOptions first_round;
   MapperOptions later_rounds;
-  // True: the lens is ours to find, so that it is held while models grow, and adjusted afterwards
-  // (adjust_lens.h). False: the user decides what the mapper refines.
-  bool finds_lens = true;
+  LensRule lens = LensRule::kFind;
   bool adjusts_principal_point = true;
   int num_threads = 1;                // of our adjustment; -1 = all cores; never changes a result
   std::vector<std::string> pictures;  // those that have a verified pair
@@ -45,8 +50,9 @@ struct MapperJob {
 // with more pictures that their own matches do not contradict, then the one with the smaller error.
 // The trials of the global mapper, of thinned matches and of the given initial pair are compared in
 // the same way; one picture in 50 may be left over before another trial is made. Models of fewer
-// than 50 points are not taken. Throws Error when the mapper fails or no round finds a model,
-// UsageError when it refuses an option's value.
+// than 50 points are not taken. Throws Error when the mapper or the triangulator fails in a trial
+// that has no model to fall back on, or no round finds a model, UsageError when the mapper refuses
+// an option's value.
 void RunMapper(const ColmapProgram& colmap, const MapperJob& job);
 
 }  // namespace colmap_seapoint

@@ -54,6 +54,12 @@ std::map<uint32_t, LensFreedom> LensesToTie(const SparseModel& before, const Spa
   return ties;
 }
 
+std::map<uint32_t, LensFreedom> AllHeld(const SparseModel& model) {
+  std::map<uint32_t, LensFreedom> lenses;
+  for (const auto& [id, camera] : model.cameras) lenses[id].held_params = ~0u;
+  return lenses;
+}
+
 }  // namespace
 
 SoundAdjustment AdjustSoundly(const SparseModel& before, const LensLimits& limits) {
@@ -62,8 +68,9 @@ SoundAdjustment AdjustSoundly(const SparseModel& before, const LensLimits& limit
   options.refine_principal_point = limits.frees_principal_point;
   options.num_threads = limits.num_threads;
   if (!limits.rejects_outliers) options.last_loss.reset();
+  if (limits.holds_lens) options.lenses = AllHeld(before);
   std::optional<SparseModel> after = AdjustBundle(options, before);
-  if (after) {
+  if (after && !limits.holds_lens) {
     options.lenses = LensesToTie(before, *after);
     if (!options.lenses.empty()) after = AdjustBundle(options, before);
   }

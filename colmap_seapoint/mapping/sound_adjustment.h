@@ -13,7 +13,8 @@ struct LensLimits {
   // Observations that are far off shall count for nothing in the end; not worth its time before the
   // last adjustment.
   bool rejects_outliers = false;
-  int num_threads = 1;  // -1 = all; never changes a result
+  int num_threads = 1;      // -1 = all; never changes a result
+  bool holds_lens = false;  // all of it: poses and points alone are adjusted
 };
 
 struct SoundAdjustment {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
@@ -42,9 +43,9 @@ void PrepareThinned(const ColmapProgram& colmap, const MapperJob& job, const fs:
       WriteThinnedDatabase(database, options, plan->triangulation_path);
     }
   }
-  if (job.pictures.size() < kMinPicturesOfPilot) return;
+  if (job.lens != LensRule::kFind || job.pictures.size() < kMinPicturesOfPilot) return;
   const std::map<uint32_t, Camera> lenses =
-      LearnLenses(colmap, CallOf(colmap, job, *plan, folder / "pilot", "1_pilot"),
+      LearnLenses(colmap, CallOf(job, *plan, folder / "pilot", "1_pilot"),
                   job.adjusts_principal_point, job.num_threads);
   if (lenses.empty()) return;
   ColmapDatabase thinned(plan->database_path, ColmapDatabase::Mode::kReadWrite,
@@ -58,7 +59,8 @@ void PrepareThinned(const ColmapProgram& colmap, const MapperJob& job, const fs:
 // pair, but for few of its 200 times. nullopt where that would be no other trial, or the user
 // chose.
 std::optional<MapperOptions> LargerModels(const ColmapProgram& colmap, const MapperJob& job) {
-  if (!job.finds_lens || job.first_round.count(kNumBeginnings) > 0) return std::nullopt;
+  if (job.lens == LensRule::kLeaveToMapper || job.first_round.count(kNumBeginnings) > 0)
+    return std::nullopt;
   for (const char* name : {kMinModelSize, kNumBeginnings}) {
     if (!colmap.HasMapperOption(name)) return std::nullopt;
   }
@@ -68,56 +70,88 @@ std::optional<MapperOptions> LargerModels(const ColmapProgram& colmap, const Map
   return options;
 }
 
+// What of the lens the mapper holds, by the job's rule.
+void HoldLens(const ColmapProgram& colmap, LensRule rule, TrialPlan* plan) {
+  const auto hold = [&](const char* name) {
+    if (!colmap.HasMapperOption(name)) return false;
+    plan->options[name] = "0";
+    return true;
+  };
+  const bool is_global = plan->command != kMapper;
+  if (rule == LensRule::kFind) {
+    plan->holds_distortion = hold(is_global ? kGlobalRefineDistortion : kRefineDistortion);
+  }
+  if (rule == LensRule::kHold) {
+    hold(kRefineFocal);
+    hold(kRefineDistortion);
+  }
+}
+
+// A run of COLMAP's mapper with all matches.
+TrialPlan PlainPlan(const MapperJob& job, const std::string& name, const MapperOptions& options) {
+  TrialPlan plan;
+  plan.name = name;
+  plan.database_path = plan.triangulation_path = job.database_path;
+  plan.options = options;
+  return plan;
+}
+
+TrialPlan GlobalPlan(const MapperJob& job) {
+  TrialPlan plan = PlainPlan(job, "_global", *job.global_round);
+  plan.command = kGlobalMapper;
+  return plan;
+}
+
+TrialPlan ThinnedPlan(const ColmapProgram& colmap, const MapperJob& job, const fs::path& folder) {
+  TrialPlan plan = PlainPlan(job, "_thinned", job.initial_pair_round.value_or(job.first_round));
+  plan.must_succeed = true;
+  plan.database_path = folder / "database.db";
+  plan.prepare = [&colmap, &job, folder](TrialPlan* prepared) {
+    PrepareThinned(colmap, job, folder, prepared);
+  };
+  return plan;
+}
+
 }  // namespace
 
 std::vector<TrialPlan> PlanFirstRound(const ColmapProgram& colmap, const MapperJob& job,
                                       const fs::path& folder) {
   std::vector<TrialPlan> plans;
-  const auto add = [&](const std::string& name, const MapperOptions& options, bool holds) {
-    plans.push_back(
-        {name, kMapper, job.database_path, job.database_path, options, holds, false, {}});
+  const auto add = [&](TrialPlan plan) {
+    HoldLens(colmap, job.lens, &plan);
+    plans.push_back(std::move(plan));
   };
-  if (job.global_round) {
-    add("_global", *job.global_round, true);
-    plans.back().command = kGlobalMapper;
-  }
-  if (job.thins_matches) {
-    add("_thinned", job.initial_pair_round.value_or(job.first_round), job.finds_lens);
-    plans.back().must_succeed = true;
-    plans.back().database_path = folder / "database.db";
-    plans.back().prepare = [&colmap, &job, folder](TrialPlan* plan) {
-      PrepareThinned(colmap, job, folder, plan);
-    };
-  }
-  if (job.initial_pair_round) add("_initial_pair", *job.initial_pair_round, job.finds_lens);
-  add("", job.first_round, job.finds_lens);
+  if (job.global_round) add(GlobalPlan(job));
+  if (job.thins_matches) add(ThinnedPlan(colmap, job, folder));
+  if (job.initial_pair_round) add(PlainPlan(job, "_initial_pair", *job.initial_pair_round));
+  add(PlainPlan(job, "", job.first_round));
   plans.back().must_succeed = true;
-  add(kFreeDistortion, job.first_round, false);
-  if (const auto larger = LargerModels(colmap, job)) add("_larger_models", *larger, false);
+  // Where a held distortion may be what keeps pictures out.
+  if (job.lens == LensRule::kFind) {
+    plans.push_back(PlainPlan(job, "_free_distortion", job.first_round));
+    plans.back().frees_distortion = true;
+  }
+  if (const auto larger = LargerModels(colmap, job)) {
+    plans.push_back(PlainPlan(job, "_larger_models", *larger));
+    if (job.lens == LensRule::kHold) HoldLens(colmap, job.lens, &plans.back());
+  }
   return plans;
 }
 
-std::vector<TrialPlan> PlanLaterRound(const MapperJob& job) {
-  return {{"",
-           kMapper,
-           job.database_path,
-           job.database_path,
-           job.later_rounds,
-           job.finds_lens,
-           false,
-           {}}};
+std::vector<TrialPlan> PlanLaterRound(const ColmapProgram& colmap, const MapperJob& job) {
+  TrialPlan plan = PlainPlan(job, "", job.later_rounds);
+  HoldLens(colmap, job.lens, &plan);
+  return {plan};
 }
 
-MapperCall CallOf(const ColmapProgram& colmap, const MapperJob& job, const TrialPlan& plan,
-                  const fs::path& output_path, const std::string& log_name) {
+MapperCall CallOf(const MapperJob& job, const TrialPlan& plan, const fs::path& output_path,
+                  const std::string& log_name) {
   MapperCall call;
   call.command = plan.command;
   call.database_path = plan.database_path;
   call.image_path = job.image_path;
   call.output_path = output_path;
   call.options = plan.options;
-  const char* refine = plan.command == kMapper ? kRefineDistortion : kGlobalRefineDistortion;
-  if (plan.holds_distortion && colmap.HasMapperOption(refine)) call.options[refine] = "0";
   call.num_pictures = job.pictures.size();
   call.log_path = job.log_folder / ("mapper_" + log_name + ".log");
   call.must_succeed = plan.must_succeed;

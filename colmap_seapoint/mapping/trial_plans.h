@@ -12,7 +12,6 @@
 namespace colmap_seapoint {
 
 inline constexpr char kMapper[] = "mapper";
-inline constexpr char kFreeDistortion[] = "_free_distortion";
 
 struct TrialPlan {
   std::string name;  // of its folder and log, behind the round's
@@ -20,7 +19,10 @@ struct TrialPlan {
   std::filesystem::path database_path;
   std::filesystem::path triangulation_path;  // the database whose matches become the points
   MapperOptions options;
-  bool holds_distortion = false;
+  bool holds_distortion = false;  // by the options
+  // It differs from the one before it in nothing but that the distortion is free: no other trial
+  // where that one could not hold it.
+  bool frees_distortion = false;
   bool must_succeed = false;                // when no trial before it found a model
   std::function<void(TrialPlan*)> prepare;  // before it is run; may be empty
 };
@@ -31,10 +33,10 @@ struct TrialPlan {
 std::vector<TrialPlan> PlanFirstRound(const ColmapProgram& colmap, const MapperJob& job,
                                       const std::filesystem::path& folder);
 
-std::vector<TrialPlan> PlanLaterRound(const MapperJob& job);
+std::vector<TrialPlan> PlanLaterRound(const ColmapProgram& colmap, const MapperJob& job);
 
-// The plan as a call of the mapper, with the distortion held if that is planned. All pictures.
-MapperCall CallOf(const ColmapProgram& colmap, const MapperJob& job, const TrialPlan& plan,
+// The plan as a call of the mapper. All pictures.
+MapperCall CallOf(const MapperJob& job, const TrialPlan& plan,
                   const std::filesystem::path& output_path, const std::string& log_name);
 
 }  // namespace colmap_seapoint

@@ -2,17 +2,23 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/base/run_options.h"
+#include "colmap_seapoint/cameras/camera_identity.h"
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/files/run_report.h"
+#include "colmap_seapoint/pictures/first_lens.h"
 
 namespace colmap_seapoint {
 namespace {
+
+// More are lines that nobody reads.
+constexpr size_t kMaxCameraLines = 10;
 
 std::string SizeText(int width, int height) {
   return std::to_string(width) + "x" + std::to_string(height);
@@ -26,23 +32,43 @@ std::string FolderOf(const std::string& name) {
 // Pictures with the same key share a camera.
 std::string CameraGroup(const ReadablePicture& picture, const ImageReaderOptions& options) {
   if (options.single_camera) return "";
-  if (!options.single_camera_per_folder) return picture.name;
-  return FolderOf(picture.name) + "\n" + SizeText(picture.info.width, picture.info.height) + "\n" +
-         picture.info.camera_key;
+  if (options.single_camera_per_folder == 0) return picture.name;
+  const std::string folder = FolderOf(picture.name);
+  return (options.single_camera_per_folder == 1 ? folder
+                                                : FolderFamily(folder, picture.info.camera)) +
+         "\n" + SizeText(picture.info.width, picture.info.height) + "\n" +
+         CameraKey(picture.info.camera);
 }
 
-Camera NewCamera(const ImageInfo& info, const ImageReaderOptions& options) {
-  const CameraModelInfo* model = FindCameraModel(options.camera_model);
-  SEAPOINT_CHECK(model != nullptr);
-  const double guess = options.default_focal_length_factor * std::max(info.width, info.height);
-  Camera camera =
-      MakeCamera(model->model, info.focal_length_px.value_or(guess), info.width, info.height);
-  camera.has_prior_focal_length = info.focal_length_px.has_value();
-  if (!options.camera_params.empty()) {
-    camera.params = *options.CameraParams();
-    camera.has_prior_focal_length = true;
+std::string FolderText(const std::string& folder) { return folder.empty() ? "." : folder; }
+
+// What the pictures of one camera tell of it.
+struct CameraUse {
+  const ReadablePicture* first = nullptr;
+  size_t num_pictures = 0;
+  std::set<std::string> folders;
+};
+
+// "camera 1 (GoPro HERO12 Black, 5312x2988): 30 pictures in 100GOPRO, 101GOPRO; focal length ..."
+std::string CameraLine(const Camera& camera, const CameraUse& use,
+                       const ImageReaderOptions& options) {
+  const ExifCamera& exif = use.first->info.camera;
+  std::string line = "camera " + std::to_string(camera.camera_id) + " (";
+  if (!exif.model.empty()) line += exif.maker + (exif.maker.empty() ? "" : " ") + exif.model + ", ";
+  line += SizeText(camera.width, camera.height) + "): " + std::to_string(use.num_pictures) +
+          (use.num_pictures == 1 ? " picture" : " pictures");
+  if (use.folders.size() > 1) {
+    const char* separator = " in ";
+    for (const std::string& folder : use.folders) {
+      line += separator + FolderText(folder);
+      separator = ", ";
+    }
   }
-  return camera;
+  const FirstLens lens = FirstLensOf(use.first->info, options);
+  if (lens.camera.model == camera.model && lens.camera.params == camera.params) {
+    return line + "; " + lens.origin;
+  }
+  return line + "; lens as the database has it";
 }
 
 // One registration: what the database holds, and which group got which camera.
@@ -52,6 +78,20 @@ class Registrar {
       : options_(options), database_(database), cameras_(ReadCameras(*database)) {
     for (const DatabaseImage& image : ReadImages(*database)) images_[image.name] = image;
   }
+
+  // A line each for the first cameras that pictures were registered with, by their ids.
+  std::vector<std::string> CameraLines() const {
+    std::vector<std::string> lines;
+    for (const auto& [id, use] : uses_) {
+      if (lines.size() == kMaxCameraLines) {
+        lines.push_back("and " + std::to_string(uses_.size() - kMaxCameraLines) + " more cameras");
+        break;
+      }
+      lines.push_back(CameraLine(cameras_.at(id), use, options_));
+    }
+    return lines;
+  }
+  bool HasNewCamera() const { return has_new_camera_; }
 
   // Groups of pictures that are known keep their camera, whatever order new ones come in.
   void LearnGroups(const std::vector<ReadablePicture>& pictures) {
@@ -79,6 +119,9 @@ class Registrar {
                 std::to_string(camera_id) + " is " + SizeText(width, height);
       return std::nullopt;
     }
+    CameraUse& use = uses_[camera_id];
+    if (use.num_pictures++ == 0) use.first = &picture;
+    use.folders.insert(FolderOf(picture.name));
     if (known != images_.end()) return known->second.image_id;
     return AddImage(database_, picture.name, camera_id);
   }
@@ -88,9 +131,11 @@ class Registrar {
     const std::string group = CameraGroup(picture, options_);
     const auto known = group_cameras_.find(group);
     if (known != group_cameras_.end()) return known->second;
-    const Camera camera = NewCamera(picture.info, options_);
+    Camera camera = FirstLensOf(picture.info, options_).camera;
     const uint32_t camera_id = AddCamera(database_, camera);
+    camera.camera_id = camera_id;
     cameras_[camera_id] = camera;
+    has_new_camera_ = true;
     group_cameras_[group] = camera_id;
     return camera_id;
   }
@@ -100,6 +145,8 @@ class Registrar {
   std::map<uint32_t, Camera> cameras_;
   std::map<std::string, DatabaseImage> images_;
   std::map<std::string, uint32_t> group_cameras_;
+  std::map<uint32_t, CameraUse> uses_;
+  bool has_new_camera_ = false;
 };
 
 void WarnOfTurnedPictures(const std::vector<ReadablePicture>& pictures) {
@@ -180,6 +227,10 @@ std::vector<RegisteredPicture> RegisterPictures(const std::vector<ReadablePictur
     }
   }
   transaction.Commit();
+  report->cameras = registrar.CameraLines();
+  if (registrar.HasNewCamera()) {
+    for (const std::string& line : report->cameras) LogInfo(line);
+  }
   return registered;
 }
 

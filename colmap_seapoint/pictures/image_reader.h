@@ -37,7 +37,8 @@ struct RegisteredPicture {
 
 // Adds the missing cameras and images in the order of `pictures`, in one transaction, so that ids
 // do not depend on what interrupts later work. Pictures that the database knows keep their camera.
-// Leaves out pictures whose size is not that of the camera they would get.
+// Leaves out pictures whose size is not that of the camera they would get. The report gets a line a
+// camera: which pictures it took, and where its lens is from; so does the log where one is new.
 std::vector<RegisteredPicture> RegisterPictures(const std::vector<ReadablePicture>& pictures,
                                                 const ImageReaderOptions& options,
                                                 ColmapDatabase* database, RunReport* report);

@@ -23,6 +23,7 @@ struct FeatureExtractorOptions {
   RunOptions run;
 
   void Bind(OptionTable* table);
+  void Preset() { reader.Preset(); }
 };
 
 // The pictures of a folder: those whose header can be read, and what became of the others.

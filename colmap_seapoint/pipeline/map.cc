@@ -35,6 +35,15 @@ std::string Text(const MapperOptions& options) {
   return OptionsFingerprint({options.begin(), options.end()});
 }
 
+std::string LensText(LensRule rule) {
+  return rule == LensRule::kFind ? "lens" : rule == LensRule::kHold ? "held lens" : "";
+}
+
+LensRule LensRuleOf(const AutomaticReconstructorOptions& options) {
+  if (GivesRefinement(options)) return LensRule::kLeaveToMapper;
+  return options.reader.camera_params.empty() ? LensRule::kFind : LensRule::kHold;
+}
+
 // The mapper's work depends on what the database holds, on what that was begun with, and on the
 // mapper.
 std::string Inputs(const MappingPlan& plan, const ColmapDatabase& database,
@@ -42,7 +51,7 @@ std::string Inputs(const MappingPlan& plan, const ColmapDatabase& database,
   const MapperJob& job = plan.job;
   const auto begun = state.Read("database");
   return DatabaseFingerprint(database) + (begun ? begun->dump() : "") + plan.colmap.version +
-         (job.finds_lens ? "lens" : "") + (job.thins_matches ? "thinned" : "") +
+         LensText(job.lens) + (job.thins_matches ? "thinned" : "") +
          (job.adjusts_principal_point ? "adjusted" : "") + (job.global_round ? "global" : "") +
          Text(job.first_round) + Text(job.later_rounds);
 }
@@ -106,11 +115,12 @@ MappingPlan PlanMapping(const AutomaticReconstructorOptions& options, const Work
   MappingPlan plan;
   plan.colmap = FindColmap(options.colmap_path, options.colmap_timeout);
   const int seed = options.run.random_seed;
-  const bool finds_lens = FindsLens(options);
-  // Where the lens is ours to find, the models are adjusted by us afterwards (adjust_lens.h); where
-  // it is given, the mapper's own adjustment is the last one.
-  const std::string effort = finds_lens ? options.quality : "archive";
   MapperJob& job = plan.job;
+  job.lens = LensRuleOf(options);
+  // We adjust the models afterwards (adjust_lens.h), unless the user says what the mapper refines:
+  // its own adjustment is then the last one.
+  const bool adjusts = job.lens != LensRule::kLeaveToMapper;
+  const std::string effort = adjusts ? options.quality : "archive";
   job.database_path = workspace.database;
   job.image_path = workspace.images;
   job.output_path = workspace.sparse.string() + ".tmp";
@@ -118,11 +128,10 @@ MappingPlan PlanMapping(const AutomaticReconstructorOptions& options, const Work
   job.log_folder = workspace.report;
   job.first_round = OptionsOfRound(plan.colmap, Round::kFirst, effort, seed, options.mapper);
   job.later_rounds = OptionsOfRound(plan.colmap, Round::kLater, effort, seed, options.mapper);
-  if (options.quality == "field" && finds_lens && options.mapper.empty()) {
+  if (options.quality == "field" && job.lens == LensRule::kFind && options.mapper.empty()) {
     job.global_round = OptionsOfGlobalMapper(plan.colmap, seed);
   }
-  job.finds_lens = finds_lens;
-  job.thins_matches = finds_lens && options.quality != "archive";
+  job.thins_matches = adjusts && options.quality != "archive";
   job.adjusts_principal_point = options.adjust_principal_point;
   job.num_threads = options.run.num_threads;
   return plan;

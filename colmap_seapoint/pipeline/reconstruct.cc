@@ -8,6 +8,8 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/cameras/camera_identity.h"
+#include "colmap_seapoint/cameras/exif_focal_length.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/content_hash.h"
@@ -42,9 +44,10 @@ Stage DatabaseStage(const Options& options, const std::vector<ReadablePicture>& 
                     std::to_string(options.run.random_seed);
   for (const ReadablePicture& picture : pictures) {
     const ImageInfo& info = picture.info;
+    const auto focal = FocalLengthFromExif(info.camera, info.width, info.height);
     text += "\n" + picture.name + " " + std::to_string(info.width) + " " +
-            std::to_string(info.height) + " " + std::to_string(info.focal_length_px.value_or(0)) +
-            " " + info.camera_key;
+            std::to_string(info.height) + " " + std::to_string(focal ? focal->px : 0) + " " +
+            CameraKey(info.camera);
   }
   return {"database", kMatchingVersion, text, ""};
 }
@@ -77,6 +80,13 @@ std::string HashOf(const std::vector<RunReport::Input>& pictures) {
   std::string text;
   for (const RunReport::Input& picture : pictures) text += picture.name + " " + picture.hash + "\n";
   return HashText(text);
+}
+
+// The two cameras of a rig may have one body, and one serial number.
+Options WithRigsCameras(Options options) {
+  int* per_folder = &options.reader.single_camera_per_folder;
+  if (!options.rig.empty() && *per_folder < 0) *per_folder = 1;
+  return options;
 }
 
 FeatureExtractorOptions ExtractorOptions(const Options& options, const Workspace& workspace) {
@@ -186,8 +196,9 @@ CommandResult WriteReport(const Workspace& workspace, const std::vector<ModelSum
 
 }  // namespace
 
-CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& options) {
-  options.Check();
+CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& given) {
+  given.Check();
+  const Options options = WithRigsCameras(given);
   const Workspace workspace(options.image_path, options.workspace_path);
   const MappingPlan plan = PlanMapping(options, workspace);
   WorkspaceState state(workspace.root, workspace.Names());

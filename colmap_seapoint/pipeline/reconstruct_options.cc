@@ -43,6 +43,7 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
 }
 
 void AutomaticReconstructorOptions::Preset() {
+  reader.Preset();
   if (quality != "archive") return;
   extraction.min_num_features *= 2;
   extraction.max_num_features *= 2;
@@ -69,10 +70,9 @@ void AutomaticReconstructorOptions::Check() const {
   CheckScaleTables(scale);
 }
 
-bool FindsLens(const AutomaticReconstructorOptions& options) {
-  if (!options.reader.camera_params.empty()) return false;
+bool GivesRefinement(const AutomaticReconstructorOptions& options) {
   const auto refinement = options.mapper.lower_bound("Mapper.ba_refine");
-  return refinement == options.mapper.end() || refinement->first.rfind("Mapper.ba_refine", 0) != 0;
+  return refinement != options.mapper.end() && refinement->first.rfind("Mapper.ba_refine", 0) == 0;
 }
 
 }  // namespace colmap_seapoint

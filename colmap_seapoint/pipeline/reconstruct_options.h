@@ -37,7 +37,7 @@ struct AutomaticReconstructorOptions {
   RunOptions run;
 
   void Bind(OptionTable* table);
-  // The SeaPoints' defaults of the quality.
+  // The SeaPoints' defaults of the quality, the camera model of the preset.
   void Preset();
   // To be called before any work. Throws UsageError for values that contradict each other, Error
   // for paths that are not there.
@@ -45,8 +45,7 @@ struct AutomaticReconstructorOptions {
   ForeignOptions Foreign();
 };
 
-// Whether the lens is ours to find: not where the user says what it is, or what of it is to be
-// refined.
-bool FindsLens(const AutomaticReconstructorOptions& options);
+// Whether the user says what of the lens the mapper is to refine.
+bool GivesRefinement(const AutomaticReconstructorOptions& options);
 
 }  // namespace colmap_seapoint

@@ -10,6 +10,7 @@ std::string SummaryText(const std::vector<ModelSummary>& models, const RunReport
   std::ostringstream out;
   out << report.images_used << " of " << report.images_in << " pictures used, " << models.size()
       << (models.size() == 1 ? " model, " : " models, ") << report.points << " points\n";
+  for (const std::string& camera : report.cameras) out << camera << "\n";
   for (const ModelSummary& model : models) {
     out << "model " << model.name << ": " << model.pictures.size() << " pictures, "
         << model.densification.pairs << " pairs, " << model.densification.points << " points";

@@ -62,12 +62,8 @@ SparseModel LawnMower(int num_strips, int pictures_a_strip, int points_a_picture
         int along = static_cast<int>(std::floor(point.xyz.x() / kSpacing)) + step;
         if (along < 0 || along >= pictures_a_strip) continue;
         if (strip % 2 == 1) along = pictures_a_strip - 1 - along;
-        PosedImage& image = model.images[static_cast<size_t>(strip * pictures_a_strip + along)];
-        const auto pixel = camera.ImgFromCam(image.cam_from_world * point.xyz);
-        if (!pixel || !camera.InImage(*pixel)) continue;
-        point.track.push_back({image.image_id, static_cast<uint32_t>(image.points2D.size())});
-        image.points2D.push_back(*pixel);
-        image.point3D_ids.push_back(id);
+        const auto idx = static_cast<size_t>(strip * pictures_a_strip + along);
+        Observe(camera, id, &model.images[idx], &point);
       }
     }
     model.points3D[id] = point;

@@ -107,5 +107,27 @@ TEST(OptionTable, ADoubleBindingIsABug) {
   EXPECT_THROW(table.Add("Group.flag", &values.flag, "again", "ours"), std::logic_error);
 }
 
+// COLMAP's project files hold true and false for what is a switch there.
+TEST(OptionTableSwitch, OfThreeValuesTakesColmapsWords) {
+  int value = -1;
+  OptionTable table;
+  table.Add("per_folder", &value, "a switch", "COLMAP", -1, 1);
+  EXPECT_EQ(table.Set("per_folder", "false"), "");
+  EXPECT_EQ(value, 0);
+  EXPECT_EQ(table.Set("per_folder", "true"), "");
+  EXPECT_EQ(value, 1);
+  EXPECT_EQ(table.Set("per_folder", "-1"), "");
+  EXPECT_EQ(value, -1);
+  EXPECT_NE(table.Set("per_folder", "yes"), "");
+}
+
+TEST(EditDistanceTest, LettersChangedAddedOrLeftOut) {
+  EXPECT_EQ(EditDistance("", ""), 0u);
+  EXPECT_EQ(EditDistance("", "abc"), 3u);
+  EXPECT_EQ(EditDistance("tg5_port", "tg6_port"), 1u);
+  EXPECT_EQ(EditDistance("flat", "float"), 1u);
+  EXPECT_EQ(EditDistance("kitten", "sitting"), 3u);
+}
+
 }  // namespace
 }  // namespace colmap_seapoint

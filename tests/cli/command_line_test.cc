@@ -251,5 +251,18 @@ TEST_F(CommandLine, LongHelpIsBrokenAtBlanks) {
   EXPECT_EQ(words, help);
 }
 
+TEST(ListingAskedForTest, OfAnOptionThatHasOne) {
+  std::string preset, note;
+  OptionTable table;
+  table.Add("preset", &preset, "a name", "ours");
+  table.Add("note", &note, "any text", "ours");
+  table.SetListing("preset", "all names");
+  EXPECT_EQ(ListingAskedFor({"--preset", "list"}, table), "all names");
+  EXPECT_EQ(ListingAskedFor({"--note", "x", "--preset=help"}, table), "all names");
+  EXPECT_EQ(ListingAskedFor({"--preset", "one", "--note", "list"}, table), "");
+  EXPECT_EQ(ListingAskedFor({"--preset"}, table), "");
+  EXPECT_EQ(ListingAskedFor({}, table), "");
+}
+
 }  // namespace
 }  // namespace colmap_seapoint

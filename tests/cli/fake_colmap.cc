@@ -7,6 +7,7 @@
 //   global    has a global_mapper too, which finds all; the mapper fails
 //   global_partial  has one that leaves a picture out; the mapper finds all
 //   babble    first prints 200 MB without the end of a line
+// Its point_triangulator leaves the points as they are.
 // FAKE_COLMAP_SECONDS: how long the mapper takes. FAKE_COLMAP_PID: file that gets its process id.
 #include <signal.h>
 #include <unistd.h>
@@ -14,6 +15,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -163,6 +165,13 @@ int RunMapper(bool is_global, std::map<std::string, std::string> options) {
   return EXIT_SUCCESS;
 }
 
+// The points that are there are the best that it finds.
+int RunTriangulator(std::map<std::string, std::string> options) {
+  std::filesystem::copy(options["--input_path"], options["--output_path"],
+                        std::filesystem::copy_options::recursive);
+  return EXIT_SUCCESS;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -175,14 +184,18 @@ int main(int argc, char** argv) {
     return EXIT_SUCCESS;
   }
   const bool is_global = has_global_mapper && !arguments.empty() && arguments[0] == "global_mapper";
-  if (arguments.size() < 2 || (arguments[0] != "mapper" && !is_global)) return EXIT_FAILURE;
+  const bool is_triangulator = !arguments.empty() && arguments[0] == "point_triangulator";
+  if (arguments.size() < 2 || (arguments[0] != "mapper" && !is_global && !is_triangulator)) {
+    return EXIT_FAILURE;
+  }
   if (arguments[1] == "-h") {
     PrintHelp();
     if (is_global) std::cout << "  --GlobalMapper.num_threads arg (=-1)\n";
     return EXIT_SUCCESS;
   }
-  if (mode == "global" && !is_global) return EXIT_FAILURE;
   std::map<std::string, std::string> options;
   for (size_t i = 1; i + 1 < arguments.size(); i += 2) options[arguments[i]] = arguments[i + 1];
+  if (is_triangulator) return RunTriangulator(options);
+  if (mode == "global" && !is_global) return EXIT_FAILURE;
   return RunMapper(is_global, options);
 }

@@ -94,7 +94,8 @@ TEST_F(Program, CommandsHaveNamesSummariesAndFreshOptions) {
     for (const char* name : {"random_seed", "num_threads", "log_level"}) {
       EXPECT_NE(table.Find(name), nullptr) << command.name << " " << name;
     }
-    EXPECT_EQ(static_cast<bool>(command.preset), command.name == "automatic_reconstructor");
+    EXPECT_EQ(static_cast<bool>(command.preset),
+              command.name == "automatic_reconstructor" || command.name == "feature_extractor");
     EXPECT_EQ(command.foreign.group, command.name == "automatic_reconstructor" ? "Mapper" : "");
     ASSERT_EQ(table.Set("random_seed", "77"), "");
   }

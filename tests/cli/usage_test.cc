@@ -35,6 +35,23 @@ TEST(Usage, VersionIsOneLine) {
   EXPECT_EQ(result.out.find('\n'), result.out.size() - 1);
 }
 
+TEST(Usage, CameraPresetsAreListed) {
+  for (const char* command : {"feature_extractor", "automatic_reconstructor"}) {
+    for (const char* word : {"list", "help"}) {
+      const CliResult result = RunSeaPoint({command, "--camera_preset", word});
+      EXPECT_EQ(result.exit_code, 0) << result.Text();
+      EXPECT_EQ(result.err, "");
+      EXPECT_NE(result.out.find("\ntg6_flatport "), std::string::npos) << result.out;
+    }
+  }
+  const CliResult unknown = RunSeaPoint({"feature_extractor", "--database_path", "none.db",
+                                         "--image_path", ".", "--camera_preset", "tg6"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_NE(unknown.err.find("--camera_preset tg6: there is no such camera; the nearest are "),
+            std::string::npos)
+      << unknown.err;
+}
+
 TEST(Usage, EveryCommandDescribesItsOptions) {
   for (const std::string& command : kCommands) {
     const CliResult result = RunSeaPoint({command, "-h"});

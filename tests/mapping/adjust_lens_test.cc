@@ -36,6 +36,7 @@ class AdjustLensTest : public testing::Test {
     job.database_path = dir_ / "database.db";
     job.image_path = dir_ / "images";
     job.log_path = dir_ / "lens";
+    job.holds_lens = holds_lens_;
     job.frees_distortion = frees_distortion;
     job.frees_principal_point = frees_principal_point;
     return AdjustLens(colmap_.Program(), job, folder_);
@@ -46,6 +47,15 @@ class AdjustLensTest : public testing::Test {
            ReadBytes(folder_ / "points3D.bin");
   }
 
+  // What a triangulation is refused for.
+  SparseModel WithAPictureLost() const {
+    SparseModel model = exact_;
+    model.images.pop_back();
+    for (auto& [id, point] : model.points3D) point.track.clear();
+    return model;
+  }
+
+  bool holds_lens_ = false;
   TempDir dir_;
   const fs::path folder_ = dir_ / "model";
   ScriptedColmap colmap_{dir_ / "bin"};
@@ -116,15 +126,30 @@ TEST_F(AdjustLensTest, APictureThatNoPoseMakesAgreeWithItsMatchesIsCounted) {
   EXPECT_EQ(Adjust(Disturbed(exact_)).num_contradicted, 1u);
 }
 
-TEST_F(AdjustLensTest, AFailedTriangulationIsSaidAndTheLensIsStillFound) {
+TEST_F(AdjustLensTest, AFailedTriangulationLeavesNothingToUse) {
   colmap_.Ends(kTriangulator, 1, "no", 1);
+  EXPECT_FALSE(Adjust(Disturbed(exact_)).is_usable);
+}
+
+TEST_F(AdjustLensTest, ARefusedTriangulationIsSaidAndTheLensIsStillFound) {
+  colmap_.Leaves(kTriangulator, 1, "", WithAPictureLost());
   const LensAdjustment adjustment = Adjust(Disturbed(exact_));
-  EXPECT_TRUE(adjustment.distortion_is_sound);
-  EXPECT_NE(
-      adjustment.outcome.find("; triangulation refused: the triangulation failed (exit code 1)"),
-      std::string::npos)
+  EXPECT_TRUE(adjustment.is_usable);
+  EXPECT_NE(adjustment.outcome.find("; triangulation refused: pictures were lost"),
+            std::string::npos)
       << adjustment.outcome;
   EXPECT_LT(LargestDifference(adjustment.model.cameras.at(1), ExactLens()), 0.5);
+}
+
+TEST_F(AdjustLensTest, AGivenLensIsHeldAndThePosesAreAdjusted) {
+  SparseModel start = Disturbed(exact_);
+  start.cameras = exact_.cameras;
+  holds_lens_ = true;
+  const LensAdjustment adjustment = Adjust(start, false);
+  EXPECT_EQ(adjustment.model.cameras.at(1).params, ExactLens().params);
+  EXPECT_GT(ReprojectionError(start), 1);
+  EXPECT_LT(ReprojectionError(adjustment.model), 1e-3);
+  EXPECT_EQ(adjustment.outcome.find("refused"), std::string::npos) << adjustment.outcome;
 }
 
 TEST_F(AdjustLensTest, PicturesComeInTheOrderOfTheirIds) {
@@ -141,7 +166,7 @@ TEST_F(AdjustLensTest, AnUnsoundLensIsRefused) {
   Camera lens = ExactLens();
   lens.params[2] += 90;
   const SparseModel start = Disturbed(ExactSurvey(lens, 5));
-  colmap_.Ends(kTriangulator, 1, "", 1);
+  colmap_.Leaves(kTriangulator, 1, "", WithAPictureLost());
   const LensAdjustment adjustment = Adjust(start);
   EXPECT_FALSE(adjustment.distortion_is_sound);
   EXPECT_NE(adjustment.outcome.find("; lens refused: the principal point moved too far"),

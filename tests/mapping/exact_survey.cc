@@ -20,6 +20,14 @@ Camera ExactLens() {
   return camera;
 }
 
+void Observe(const Camera& camera, uint64_t id, PosedImage* image, SparsePoint* point) {
+  const auto pixel = camera.ImgFromCam(image->cam_from_world * point->xyz);
+  if (!pixel || !camera.InImage(*pixel)) return;
+  point->track.push_back({image->image_id, static_cast<uint32_t>(image->points2D.size())});
+  image->points2D.push_back(*pixel);
+  image->point3D_ids.push_back(id);
+}
+
 SparseModel ExactSurvey(const Camera& camera, int pictures_a_strip) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(0, 1);
@@ -44,13 +52,7 @@ SparseModel ExactSurvey(const Camera& camera, int pictures_a_strip) {
     SparsePoint point;
     point.xyz = {(length + 2) * uniform(random) - 1, 3 * uniform(random) - 1,
                  kHeight - 0.4 * uniform(random)};
-    for (PosedImage& image : model.images) {
-      const auto pixel = camera.ImgFromCam(image.cam_from_world * point.xyz);
-      if (!pixel || !camera.InImage(*pixel)) continue;
-      point.track.push_back({image.image_id, static_cast<uint32_t>(image.points2D.size())});
-      image.points2D.push_back(*pixel);
-      image.point3D_ids.push_back(id);
-    }
+    for (PosedImage& image : model.images) Observe(camera, id, &image, &point);
     model.points3D[id] = point;
   }
   return model;

@@ -21,9 +21,10 @@ class RetriangulateTest : public testing::Test {
   RetriangulateTest() { WriteSparseModelBinary(folder_, before_); }
 
   Triangulation Run(const MapperOptions& options = {}) {
-    return Retriangulate(colmap_.Program(),
-                         {dir_ / "database.db", dir_ / "images", options, dir_ / "lens"}, folder_,
-                         before_);
+    return Retriangulate(
+        colmap_.Program(),
+        {dir_ / "database.db", dir_ / "images", options, dir_ / "lens", must_succeed_}, folder_,
+        before_);
   }
 
   // The model without its last pictures and points.
@@ -39,6 +40,7 @@ class RetriangulateTest : public testing::Test {
     return model;
   }
 
+  bool must_succeed_ = false;
   TempDir dir_;
   const fs::path folder_ = dir_ / "model";
   ScriptedColmap colmap_{dir_ / "bin"};
@@ -70,10 +72,51 @@ TEST_F(RetriangulateTest, LostPicturesOrPointsAreRefused) {
 TEST_F(RetriangulateTest, AProgramThatFailsOrLeavesNothingIsRefused) {
   colmap_.Ends(kTriangulator, 1, "cannot", 3);
   colmap_.Ends(kTriangulator, 2, "", 0);
-  EXPECT_EQ(Run().fault, "the triangulation failed (exit code 3)");
+  testing::internal::CaptureStderr();
+  const Triangulation result = Run();
+  EXPECT_TRUE(result.has_failed);
+  EXPECT_EQ(result.fault, "the triangulation failed (exit code 3)");
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find((dir_ / "lens_triangulation.log").string()), std::string::npos) << said;
   EXPECT_NE(ReadBytes(dir_ / "lens_triangulation.log").find("cannot"), std::string::npos);
-  EXPECT_EQ(Run().fault, "the triangulation failed (exit code 0)");
+  EXPECT_EQ(Run().fault, "the triangulation failed (it left no model)");
   EXPECT_FALSE(fs::exists(folder_.string() + ".triangulated"));
+}
+
+// COLMAP does not look whether its last bytes found room.
+TEST_F(RetriangulateTest, AModelThatIsCutShortIsAFailure) {
+  colmap_.Leaves(kTriangulator, 1, "", before_);
+  const fs::path points = dir_ / "bin" / "point_triangulator.1.output" / "points3D.bin";
+  fs::resize_file(points, fs::file_size(points) / 2);
+  const Triangulation result = Run();
+  EXPECT_TRUE(result.has_failed);
+  EXPECT_FALSE(result.model);
+  EXPECT_EQ(result.fault.find("the triangulation failed (it left a model that "), 0u)
+      << result.fault;
+}
+
+TEST_F(RetriangulateTest, AFailureWhereItMustSucceedIsAnErrorWithLogAndRemedy) {
+  must_succeed_ = true;
+  colmap_.Ends(kTriangulator, 1, "No space left on device", 1);
+  const std::string text = ErrorOf([&] { Run(); });
+  EXPECT_NE(text.find((dir_ / "lens_triangulation.log").string()), std::string::npos) << text;
+  EXPECT_NE(text.find("run the same command again"), std::string::npos) << text;
+  // That it finds little is none.
+  colmap_.Leaves(kTriangulator, 2, "", Without(0, before_.points3D.size()));
+  const Triangulation result = Run();
+  EXPECT_FALSE(result.has_failed);
+  EXPECT_EQ(result.fault, "points were lost");
+}
+
+// As COLMAP 3.8 ends when no point is left.
+TEST_F(RetriangulateTest, ThatNothingIsFoundIsNoFailure) {
+  must_succeed_ = true;
+  colmap_.Ends(kTriangulator, 1,
+               "F20261129 sfm.cc:473] Check failed: bundle_adjuster.Solve(&reconstruction) ", 134);
+  const Triangulation result = Run();
+  EXPECT_FALSE(result.has_failed);
+  EXPECT_FALSE(result.model);
+  EXPECT_EQ(result.fault, "no point was found");
 }
 
 TEST_F(RetriangulateTest, LeftoversOfAnEarlierRunDoNotCount) {

@@ -8,6 +8,7 @@
 
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/mapping/adjust_lens.h"
 #include "colmap_seapoint/mapping/mapper_process.h"
 #include "tests/io/test_files.h"
 #include "tests/mapping/exact_survey.h"
@@ -21,6 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr char kMapper[] = "mapper";
 constexpr char kGlobal[] = "global_mapper";
+constexpr char kTriangulator[] = "point_triangulator";
+constexpr char kRefineFocal[] = "Mapper.ba_refine_focal_length";
 constexpr char kRefine[] = "Mapper.ba_refine_extra_params";
 
 class RunMapperTest : public testing::Test {
@@ -33,7 +36,7 @@ class RunMapperTest : public testing::Test {
     job_.log_folder = dir_ / "logs";
     job_.first_round = {{"Mapper.num_threads", "1"}};
     job_.later_rounds = {{"Mapper.num_threads", "1"}, {"Mapper.min_model_size", "4"}};
-    job_.finds_lens = false;
+    job_.lens = LensRule::kLeaveToMapper;
     // Without matches: nothing contradicts a pose.
     ColmapDatabase(job_.database_path, ColmapDatabase::Mode::kCreateIfMissing);
     WriteTinyPictures(survey_, job_.image_path);
@@ -222,7 +225,7 @@ TEST_F(RunMapperTest, ARefusedValueIsAFaultOfTheCommandLine) {
 }
 
 TEST_F(RunMapperTest, TheDistortionIsHeldAndThenFreedWherePicturesAreLeftOver) {
-  job_.finds_lens = true;
+  job_.lens = LensRule::kFind;
   colmap_.Leaves(kMapper, 1, "0", Part(1, 6));
   colmap_.Leaves(kMapper, 2, "0", survey_);
   Run();
@@ -238,7 +241,7 @@ TEST_F(RunMapperTest, TheDistortionIsHeldAndThenFreedWherePicturesAreLeftOver) {
 }
 
 TEST_F(RunMapperTest, OfTwoTrialsTheOneWithMorePicturesCounts) {
-  job_.finds_lens = true;
+  job_.lens = LensRule::kFind;
   colmap_.Leaves(kMapper, 1, "0", Part(1, 9, 1.0));  // the worse error does not matter
   colmap_.Leaves(kMapper, 2, "0", Part(1, 8));
   Run();
@@ -248,7 +251,7 @@ TEST_F(RunMapperTest, OfTwoTrialsTheOneWithMorePicturesCounts) {
 TEST_F(RunMapperTest, PicturesThatStandWrongAreBroughtBackAndCount) {
   fs::remove(job_.database_path);
   WriteSurveyDatabase(survey_, job_.database_path);
-  job_.finds_lens = true;
+  job_.lens = LensRule::kFind;
   // All pictures, of which four stand where none of their matches put them, with a free distortion.
   SparseModel torn = Part(1, 10);
   for (size_t i = 6; i < 10; ++i) {
@@ -267,7 +270,7 @@ TEST_F(RunMapperTest, PicturesThatStandWrongAreBroughtBackAndCount) {
 }
 
 TEST_F(RunMapperTest, OfTrialsWithAsManyPicturesTheSmallerErrorCounts) {
-  job_.finds_lens = true;
+  job_.lens = LensRule::kFind;
   SparseModel noisy = Part(1, 9);
   for (PosedImage& image : noisy.images) {
     for (size_t i = 0; i < image.points2D.size(); ++i) {
@@ -281,7 +284,7 @@ TEST_F(RunMapperTest, OfTrialsWithAsManyPicturesTheSmallerErrorCounts) {
 }
 
 TEST_F(RunMapperTest, ALensThatIsNotSoundIsDoubtfulToo) {
-  job_.finds_lens = true;
+  job_.lens = LensRule::kFind;
   Camera lens = ExactLens();
   lens.params[2] += 90;  // farther from the centre than an adjustment may find it
   colmap_.Leaves(kMapper, 1, "0", Disturbed(ExactSurvey(lens, 5)));
@@ -293,7 +296,7 @@ TEST_F(RunMapperTest, ALensThatIsNotSoundIsDoubtfulToo) {
 }
 
 TEST_F(RunMapperTest, AFailureOfTheSecondTrialLeavesTheFirst) {
-  job_.finds_lens = true;
+  job_.lens = LensRule::kFind;
   colmap_.Leaves(kMapper, 1, "0", Part(1, 9));
   colmap_.Leaves(kMapper, 2, "0", Part(1, 9));
   colmap_.Ends(kMapper, 2, "out of memory", 1);
@@ -305,7 +308,7 @@ TEST_F(RunMapperTest, AFailureOfTheSecondTrialLeavesTheFirst) {
 
 TEST_F(RunMapperTest, WhereASmallModelLeavesPicturesOverColmapBeginsAFewTimesAnew) {
   colmap_.SetHelp(MapperHelp("COLMAP 3.8", {"Mapper.min_model_size", "Mapper.init_num_trials"}));
-  job_.finds_lens = true;
+  job_.lens = LensRule::kFind;
   colmap_.Leaves(kMapper, 1, "0", Part(1, 4));
   colmap_.Leaves(kMapper, 2, "0", survey_);
   Run();
@@ -313,6 +316,73 @@ TEST_F(RunMapperTest, WhereASmallModelLeavesPicturesOverColmapBeginsAFewTimesAne
   EXPECT_EQ(colmap_.Value(kMapper, 2, "Mapper.min_model_size"), "10");
   EXPECT_EQ(colmap_.Value(kMapper, 2, "Mapper.init_num_trials"), "2");
   EXPECT_EQ(NamesIn("0").size(), 10u);
+}
+
+// Another model than the next run would find: a full disk is no matter of taste.
+TEST_F(RunMapperTest, ATriangulatorThatFailsEndsTheRun) {
+  job_.lens = LensRule::kFind;
+  colmap_.Leaves(kMapper, 1, "0", survey_);
+  colmap_.Ends(kTriangulator, 1, "No space left on device", 1);
+  const std::string text = ErrorOf([&] { Run(); });
+  EXPECT_NE(text.find("the triangulation failed (exit code 1)"), std::string::npos) << text;
+  EXPECT_NE(text.find((dir_ / "logs" / "lens_1_0_triangulation.log").string()), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("run the same command again"), std::string::npos) << text;
+  EXPECT_EQ(NumModels(), 0u);
+}
+
+TEST_F(RunMapperTest, ATriangulatorThatFindsNothingEndsNoRun) {
+  job_.lens = LensRule::kFind;
+  SparseModel nothing = OfFewPoints(survey_, 0);
+  colmap_.Leaves(kMapper, 1, "0", survey_);
+  colmap_.Leaves(kTriangulator, 1, "", nothing);
+  testing::internal::CaptureStderr();
+  Run();
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("points were lost"), std::string::npos);
+  EXPECT_EQ(NamesIn("0").size(), 10u);
+}
+
+TEST_F(RunMapperTest, ATriangulatorThatFailsInALaterRoundLeavesWhatWasFound) {
+  job_.lens = LensRule::kFind;
+  colmap_.SetHelp(MapperHelp("COLMAP 3.8", {"Mapper.num_threads"}));  // it cannot hold distortion
+  colmap_.Leaves(kMapper, 1, "0", Part(1, 5));
+  colmap_.Leaves(kMapper, 2, "0", Part(6, 10));
+  colmap_.Ends(kTriangulator, 2, "killed", 137);
+  testing::internal::CaptureStderr();
+  Run();
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("the triangulation failed (exit code 137)"), std::string::npos) << said;
+  EXPECT_EQ(NumModels(), 1u);
+  EXPECT_EQ(NamesIn("0").size(), 5u);
+}
+
+TEST_F(RunMapperTest, AGivenLensIsHeldByAll) {
+  job_.lens = LensRule::kHold;
+  colmap_.SetHelp(MapperHelp("COLMAP 3.8", {"Mapper.num_threads", kRefine, kRefineFocal}));
+  SparseModel start = Disturbed(survey_);
+  start.cameras = survey_.cameras;
+  colmap_.Leaves(kMapper, 1, "0", start);
+  Run();
+  EXPECT_EQ(colmap_.NumCalls(kMapper), 1);
+  EXPECT_EQ(colmap_.Value(kMapper, 1, kRefine), "0");
+  EXPECT_EQ(colmap_.Value(kMapper, 1, kRefineFocal), "0");
+  EXPECT_EQ(colmap_.NumCalls(kTriangulator), 1);
+  const SparseModel model = ReadSparseModel(job_.output_path / "0");
+  EXPECT_EQ(model.cameras.at(1).params, survey_.cameras.at(1).params);
+  EXPECT_LT(ReprojectionError(model), 1e-3);
+}
+
+// All trials hold it: none of them is there to free it.
+TEST_F(RunMapperTest, AGivenLensIsNotFreedWherePicturesAreLeftOver) {
+  job_.lens = LensRule::kHold;
+  colmap_.SetHelp(MapperHelp(
+      "COLMAP 3.8", {"Mapper.min_model_size", "Mapper.init_num_trials", kRefine, kRefineFocal}));
+  colmap_.Leaves(kMapper, 1, "0", Part(1, 6));
+  colmap_.Leaves(kMapper, 2, "0", Part(1, 8));
+  Run();
+  ASSERT_EQ(colmap_.NumCalls(kMapper), 2);
+  for (const int call : {1, 2}) EXPECT_EQ(colmap_.Value(kMapper, call, kRefineFocal), "0");
+  EXPECT_EQ(colmap_.Value(kMapper, 2, "Mapper.min_model_size"), "10");
 }
 
 class InitialPairRound : public RunMapperTest {
@@ -350,7 +420,7 @@ class ThinnedRound : public RunMapperTest {
   ThinnedRound() {
     WriteSurveyDatabase(survey_, job_.database_path);
     job_.thins_matches = true;
-    job_.finds_lens = true;
+    job_.lens = LensRule::kFind;
   }
 };
 

@@ -1,5 +1,7 @@
 #include "colmap_seapoint/pictures/image_reader.h"
 
+#include <exiv2/exiv2.hpp>
+
 #include "tests/io/database_calls.h"
 #include "tests/io/test_database.h"
 
@@ -13,6 +15,22 @@ class ImageReaderTest : public testing::Test {
   void AddPicture(const std::string& name, int width = 64, int height = 48) {
     std::filesystem::create_directories((dir_ / name).parent_path());
     WriteImage(dir_ / name, GrayImage(width, height, 1, 100));
+  }
+
+  using Tags = std::map<std::string, std::string>;
+  // A JPEG of a camera whose focal length is known in two ways.
+  void AddPictureOf(const std::string& model, const std::string& name, const Tags& others = {},
+                    int width = 64, int height = 48) {
+    AddPicture(name, width, height);
+    Tags tags = {{"Exif.Image.Make", "Sea"},
+                 {"Exif.Image.Model", model},
+                 {"Exif.Photo.FocalLength", "8/1"},
+                 {"Exif.Photo.FocalLengthIn35mmFilm", "28"}};
+    for (const auto& [key, value] : others) tags[key] = value;
+    const auto image = Exiv2::ImageFactory::open((dir_ / name).string());
+    image->readMetadata();
+    for (const auto& [key, value] : tags) image->exifData()[key] = value;
+    image->writeMetadata();
   }
 
   // All that one run of feature_extractor does before it looks for SeaPoints.
@@ -86,7 +104,7 @@ TEST_F(ImageReaderTest, PicturesOfOneFolderAndSizeShareACamera) {
 }
 
 TEST_F(ImageReaderTest, OneCameraAPicture) {
-  options_.single_camera_per_folder = false;
+  options_.single_camera_per_folder = 0;
   AddPicture("a.png");
   AddPicture("b.png");
   Register();
@@ -120,6 +138,91 @@ TEST_F(ImageReaderTest, NewCamerasGuessTheirFocalLengthOrTakeWhatIsGiven) {
   EXPECT_EQ(cameras_.at(1).params[0], 96);  // known cameras stay
   EXPECT_EQ(cameras_.at(2).params, (std::vector<double>{70, 31, 23, 0.1}));
   EXPECT_TRUE(cameras_.at(2).has_prior_focal_length);
+}
+
+TEST_F(ImageReaderTest, ACameraIsKnownAgainInTheNextFolder) {
+  AddPictureOf("Eye", "DCIM/100GOPRO/a.jpg");
+  AddPictureOf("Eye", "DCIM/101GOPRO/a.jpg");
+  AddPictureOf("Eye", "DCIM/101GOPRO/zoomed.jpg", {{"Exif.Photo.FocalLength", "9/1"}});
+  AddPictureOf("Eye", "DCIM/102GOPRO/large.jpg", {}, 128, 96);
+  AddPictureOf("Ear", "DCIM/102GOPRO/other.jpg");
+  AddPictureOf("Eye", "spare/a.jpg");
+  AddPicture("DCIM/100GOPRO/b.png");
+  AddPicture("DCIM/101GOPRO/b.png");
+  const auto images = Register();
+  EXPECT_EQ(cameras_.size(), 7u);
+  EXPECT_EQ(images.at("DCIM/100GOPRO/a.jpg").camera_id, images.at("DCIM/101GOPRO/a.jpg").camera_id);
+  ASSERT_EQ(report_.cameras.size(), 7u);
+  EXPECT_EQ(report_.cameras[0],
+            "camera 1 (Sea Eye, 64x48): 2 pictures in DCIM/100GOPRO, DCIM/101GOPRO; focal length "
+            "51 px from EXIF (35 mm equivalent)");
+}
+
+TEST_F(ImageReaderTest, ASerialNumberTellsACameraInEveryFolder) {
+  AddPictureOf("Eye", "day1/a.jpg", {{"Exif.Photo.BodySerialNumber", "A1234"}});
+  AddPictureOf("Eye", "day2/a.jpg", {{"Exif.Photo.BodySerialNumber", "A1234"}});
+  AddPictureOf("Eye", "day2/b.jpg", {{"Exif.Photo.BodySerialNumber", "A1235"}});
+  const auto images = Register();
+  EXPECT_EQ(cameras_.size(), 2u);
+  EXPECT_EQ(images.at("day1/a.jpg").camera_id, images.at("day2/a.jpg").camera_id);
+}
+
+TEST_F(ImageReaderTest, TheUsersWordOnFoldersCounts) {
+  AddPictureOf("Eye", "100GOPRO/a.jpg");
+  AddPictureOf("Eye", "101GOPRO/a.jpg");
+  options_.single_camera_per_folder = 1;
+  Register();
+  EXPECT_EQ(cameras_.size(), 2u);
+}
+
+TEST_F(ImageReaderTest, WhereTheLensIsFrom) {
+  const auto line = [&](const std::string& name) {
+    Register();
+    EXPECT_EQ(report_.cameras.size(), 1u);
+    std::filesystem::remove(dir_ / "database.db");
+    std::filesystem::remove(dir_ / name);
+    return report_.cameras.front().substr(report_.cameras.front().find(';') + 2);
+  };
+  AddPicture("a.png");
+  EXPECT_EQ(line("a.png"), "focal length 77 px guessed (1.2 x the longer side)");
+  options_.camera_preset = "flatport";
+  AddPicture("a.png");
+  EXPECT_EQ(line("a.png"), "focal length 77 px guessed (1.2 x the longer side)");
+  AddPictureOf("Eye", "a.jpg");
+  EXPECT_EQ(line("a.jpg"),
+            "focal length 68 px from EXIF (35 mm equivalent), seen through a flat port x 1.33");
+  EXPECT_NEAR(cameras_.at(1).params[0], 1.333 * 28 / 35 * 64, 1e-9);
+  EXPECT_TRUE(cameras_.at(1).has_prior_focal_length);
+  // A preset that knows its lens better than EXIF does, and one that does not.
+  options_.camera_preset = "gopro_linear_dome";
+  AddPictureOf("Eye", "a.jpg");
+  EXPECT_EQ(line("a.jpg"),
+            "focal length 34 px of the preset gopro_linear_dome, seen through a dome");
+  options_.camera_preset = "tg6_flatport";
+  AddPictureOf("Eye", "a.jpg");
+  EXPECT_NE(line("a.jpg").find("from EXIF"), std::string::npos);
+  options_.camera_preset = "";
+  options_.camera_params = "70,70,31,23,0,0,0,0";
+  AddPictureOf("Eye", "a.jpg");
+  EXPECT_EQ(line("a.jpg"),
+            "focal length 70 px, as all of the lens from --ImageReader.camera_params");
+}
+
+TEST_F(ImageReaderTest, ACameraOfAnEarlierRunIsSaidAsItIs) {
+  AddPicture("a.png");
+  Register();
+  options_.default_focal_length_factor = 2;
+  Register();
+  ASSERT_EQ(report_.cameras.size(), 1u);
+  EXPECT_EQ(report_.cameras[0], "camera 1 (64x48): 1 picture; lens as the database has it");
+}
+
+TEST_F(ImageReaderTest, ManyCamerasAreNotAllNamed) {
+  options_.single_camera_per_folder = 0;
+  for (int i = 0; i < 13; ++i) AddPicture("img" + std::to_string(i) + ".png");
+  Register();
+  ASSERT_EQ(report_.cameras.size(), 11u);
+  EXPECT_EQ(report_.cameras.back(), "and 3 more cameras");
 }
 
 TEST_F(ImageReaderTest, AddingPicturesChangesNoId) {
@@ -157,6 +260,14 @@ TEST(ImageReaderOptionsTest, Check) {
               std::string::npos)
         << params;
   }
+  options.camera_params = "900,900,500,375,0,0,0,0";
+  options.camera_preset = "flatport";
+  EXPECT_NE(options.Check().find("cannot be given together"), std::string::npos);
+  options.camera_params = "";
+  EXPECT_EQ(options.Check(), "");
+  options.camera_preset = "flatpart";
+  EXPECT_NE(options.Check().find("the nearest are flatport"), std::string::npos);
+  options.camera_preset = "";
   options.camera_model = "PINHOLE4";
   EXPECT_NE(options.Check().find("--ImageReader.camera_model PINHOLE4: must be one of "),
             std::string::npos);

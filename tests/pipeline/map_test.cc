@@ -78,7 +78,7 @@ TEST_F(PlanMappingTest, QualityIsTheMappersEffort) {
   EXPECT_EQ(Value(archive.first_round, "Mapper.ba_global_frames_ratio"), "not given");
   EXPECT_FALSE(archive.global_round.has_value());
   for (const MapperJob& job : {survey, field, archive}) {
-    EXPECT_TRUE(job.finds_lens);
+    EXPECT_EQ(job.lens, LensRule::kFind);
     EXPECT_TRUE(job.adjusts_principal_point);
     EXPECT_EQ(Value(job.first_round, "Mapper.num_threads"), "1");
     // The later rounds ask for less.
@@ -109,22 +109,31 @@ TEST_F(PlanMappingTest, FieldTriesTheGlobalMapperFirst) {
                }).job.global_round.has_value());
 }
 
-TEST_F(PlanMappingTest, AGivenLensIsTheMappersOwn) {
-  const auto expect_given = [](const MapperJob& job) {
-    EXPECT_FALSE(job.finds_lens);
+TEST_F(PlanMappingTest, AGivenLensIsHeldAndTheRestAdjusted) {
+  const MapperJob job = Plan([](Options* options) {
+                          options->quality = "field";
+                          options->reader.camera_model = "SIMPLE_PINHOLE";
+                          options->reader.camera_params = "480,200,150";
+                        }).job;
+  EXPECT_EQ(job.lens, LensRule::kHold);
+  EXPECT_TRUE(job.thins_matches);
+  EXPECT_FALSE(job.global_round.has_value());
+  EXPECT_EQ(Value(job.first_round, "Mapper.ba_global_frames_ratio"), "2");
+}
+
+TEST_F(PlanMappingTest, WhatTheUserHasRefinedIsTheMappersOwn) {
+  for (const char* params : {"", "480,480,200,150,0,0,0,0"}) {
+    const MapperJob job = Plan([&](Options* options) {
+                            options->quality = "field";
+                            options->reader.camera_params = params;
+                            options->mapper["Mapper.ba_refine_focal_length"] = "0";
+                          }).job;
+    EXPECT_EQ(job.lens, LensRule::kLeaveToMapper);
+    EXPECT_FALSE(job.thins_matches);
     EXPECT_FALSE(job.global_round.has_value());
     EXPECT_EQ(Value(job.first_round, "Mapper.ba_global_frames_ratio"), "not given");
     EXPECT_EQ(Value(job.later_rounds, "Mapper.ba_local_num_images"), "not given");
-  };
-  expect_given(Plan([](Options* options) {
-                 options->quality = "field";
-                 options->reader.camera_model = "SIMPLE_PINHOLE";
-                 options->reader.camera_params = "480,200,150";
-               }).job);
-  expect_given(Plan([](Options* options) {
-                 options->quality = "field";
-                 options->mapper["Mapper.ba_refine_focal_length"] = "0";
-               }).job);
+  }
 }
 
 TEST_F(PlanMappingTest, TheUsersOptionsWinAndUnknownOnesAreRefused) {

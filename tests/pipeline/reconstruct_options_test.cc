@@ -64,28 +64,32 @@ TEST_F(ReconstructOptions, TheMappersOptionsAreForeign) {
   EXPECT_FALSE(foreign.help.empty());
 }
 
-TEST_F(ReconstructOptions, TheLensIsOursUnlessTheUserSaysWhatItIs) {
-  const auto finds = [](const std::string& mapper_option) {
+TEST_F(ReconstructOptions, WhetherTheUserSaysWhatTheMapperRefines) {
+  const auto gives = [](const std::string& mapper_option) {
     Options options;
     options.mapper[mapper_option] = "1";
-    return FindsLens(options);
+    return GivesRefinement(options);
   };
-  EXPECT_TRUE(FindsLens(Options()));
-  EXPECT_TRUE(finds("Mapper.min_model_size"));
-  EXPECT_TRUE(finds("Mapper.ba_global_max_refinements"));
-  EXPECT_TRUE(finds("Mapper.ba_ref"));
-  EXPECT_TRUE(finds("Mapper.tri_min_angle"));
-  EXPECT_FALSE(finds("Mapper.ba_refine_focal_length"));
-  EXPECT_FALSE(finds("Mapper.ba_refine_principal_point"));
-  Options options;
-  options.reader.camera_params = "480,480,200,150";
-  EXPECT_FALSE(FindsLens(options));
+  EXPECT_FALSE(GivesRefinement(Options()));
+  EXPECT_FALSE(gives("Mapper.min_model_size"));
+  EXPECT_FALSE(gives("Mapper.ba_global_max_refinements"));
+  EXPECT_FALSE(gives("Mapper.ba_ref"));
+  EXPECT_FALSE(gives("Mapper.tri_min_angle"));
+  EXPECT_TRUE(gives("Mapper.ba_refine_focal_length"));
+  EXPECT_TRUE(gives("Mapper.ba_refine_principal_point"));
   // Behind other options of the mapper too.
-  options = Options();
+  Options options;
   options.mapper = {{"Mapper.abs_pose_max_error", "3"},
                     {"Mapper.ba_refine_extra_params", "0"},
                     {"Mapper.min_model_size", "3"}};
-  EXPECT_FALSE(FindsLens(options));
+  EXPECT_TRUE(GivesRefinement(options));
+}
+
+TEST_F(ReconstructOptions, APresetBringsItsCameraModel) {
+  Options options;
+  options.reader.camera_preset = "gopro_wide_dome";
+  options.Preset();
+  EXPECT_EQ(options.reader.camera_model, "OPENCV_FISHEYE");
 }
 
 TEST_F(ReconstructOptions, GoodOnesPass) {

@@ -10,6 +10,7 @@ TEST(SummaryTextTest, PicturesModelsCloudsAndTimes) {
   report.images_in = 9;
   report.images_used = 7;
   report.points = 1234567;
+  report.cameras = {"camera 1 (1000x750): 9 pictures; focal length 900 px guessed"};
   report.left_out = {{"img8.jpg", "is in no model"}, {"zero.png", "is empty"}};
   report.stages = {{"mapper", 61.2, 60.0}, {"partial_densifier 0", 5.4, 9.0}};
   ModelSummary metric;
@@ -25,6 +26,7 @@ TEST(SummaryTextTest, PicturesModelsCloudsAndTimes) {
   empty.pictures = {"e", "f", "g"};
   EXPECT_EQ(SummaryText({metric, empty}, report),
             "7 of 9 pictures used, 2 models, 1234567 points\n"
+            "camera 1 (1000x750): 9 pictures; focal length 900 px guessed\n"
             "model 0: 4 pictures, 3 pairs, 1234567 points in ws/dense/0/fused.ply\n"
             "  metres, local (scale 1.5 +- 0.01)\n"
             "model 1: 3 pictures, 0 pairs, 0 points\n"

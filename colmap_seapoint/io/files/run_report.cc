@@ -55,6 +55,7 @@ void LeaveOut(const std::string& name, const std::string& reason, RunReport* rep
 
 void AddPart(const RunReport& part, RunReport* report) {
   report->stages.insert(report->stages.end(), part.stages.begin(), part.stages.end());
+  if (!part.cameras.empty()) report->cameras = part.cameras;
   std::set<std::string> named;
   for (const auto& left_out : report->left_out) named.insert(left_out.name);
   for (const auto& left_out : part.left_out) {
@@ -130,6 +131,7 @@ void to_json(Json& json, const RunReport& report) {
   json["images_in"] = report.images_in;
   json["images_used"] = report.images_used;
   json["left_out"] = report.left_out;
+  if (!report.cameras.empty()) json["cameras"] = report.cameras;
   json["pairs"] = report.pairs;
   json["points"] = report.points;
   if (!report.units.empty()) json["units"] = report.units;
@@ -148,6 +150,7 @@ void from_json(const Json& json, RunReport& report) {
   report.images_in = json.at("images_in");
   report.images_used = json.at("images_used");
   report.left_out = json.at("left_out").get<std::vector<RunReport::LeftOut>>();
+  report.cameras = json.value("cameras", std::vector<std::string>());
   report.pairs = json.at("pairs");
   report.points = json.at("points");
   report.units = json.value("units", "");

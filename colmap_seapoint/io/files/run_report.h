@@ -39,6 +39,7 @@ struct RunReport {
   int64_t images_in = 0;
   int64_t images_used = 0;
   std::vector<LeftOut> left_out;
+  std::vector<std::string> cameras;  // a line each: its pictures, and where its lens is from
   int64_t pairs = 0;
   int64_t points = 0;
   std::string units;  // of what was written: "arbitrary" or "metres"; empty where there are none
@@ -65,7 +66,7 @@ RunReport StartReport(const std::string& command, const Options& options, const 
 void LeaveOut(const std::string& name, const std::string& reason, RunReport* report);
 
 // Appends the stages of a part of a run, and what it left out: each name once, since a picture can
-// be left out of several models.
+// be left out of several models. The cameras are those of the last part that has any.
 void AddPart(const RunReport& part, RunReport* report);
 
 // Incomplete when something was left out.

@@ -1,10 +1,11 @@
 #include "colmap_seapoint/io/image/image_exif.h"
 
-#include <algorithm>
 #include <cmath>
 #include <exiv2/exiv2.hpp>
 #include <mutex>
 #include <new>
+
+#include "colmap_seapoint/io/image/image_codecs.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -25,31 +26,34 @@ std::string Text(const Exiv2::ExifData& exif, const char* key) {
   return text;
 }
 
-// COLMAP 3.8's Bitmap::ExifFocalLength without its table of sensors: the 35 mm equivalent, else the
-// focal length with the resolution of the sensor (in pixels of the picture as it was taken).
-std::optional<double> FocalLength(const Exiv2::ExifData& exif, ImageSize size) {
-  const double max_size = std::max(size.width, size.height);
-  const auto focal_35mm = Number(exif, "Exif.Photo.FocalLengthIn35mmFilm");
-  if (focal_35mm && *focal_35mm > 0) return *focal_35mm / 35.0 * max_size;
-
-  const auto focal_mm = Number(exif, "Exif.Photo.FocalLength");
-  const auto pixels = Number(exif, "Exif.Photo.PixelXDimension");
-  const auto resolution = Number(exif, "Exif.Photo.FocalPlaneXResolution");
-  const auto unit = Number(exif, "Exif.Photo.FocalPlaneResolutionUnit");
-  if (!focal_mm || !pixels || !resolution || !unit) return std::nullopt;
-  if (*focal_mm <= 0 || *pixels <= 0 || *resolution <= 0) return std::nullopt;
-  const double unit_mm = *unit == 2 ? 25.4 : *unit == 3 ? 10.0 : 0.0;
-  if (unit_mm == 0.0) return std::nullopt;
-  const double sensor_width_mm = *pixels / *resolution * unit_mm;
-  return *focal_mm / sensor_width_mm * max_size;
+// 0 for what is missing, infinite or below zero.
+double Measure(const Exiv2::ExifData& exif, const char* key) {
+  const double value = Number(exif, key).value_or(0);
+  return std::isfinite(value) && value > 0 ? value : 0;
 }
 
-std::string CameraKey(const Exiv2::ExifData& exif, ImageSize size) {
-  double focal = Number(exif, "Exif.Photo.FocalLengthIn35mmFilm").value_or(0);
-  if (focal <= 0) focal = Number(exif, "Exif.Photo.FocalLength").value_or(0);
-  return Text(exif, "Exif.Image.Make") + "-" + Text(exif, "Exif.Image.Model") + "-" +
-         std::to_string(focal) + "-" + std::to_string(size.width) + "x" +
-         std::to_string(size.height);
+// By the units of TIFF, and the two that some cameras write; 0 for others.
+double UnitMm(const Exiv2::ExifData& exif) {
+  const double unit = Measure(exif, "Exif.Photo.FocalPlaneResolutionUnit");
+  return unit == 2 ? 25.4 : unit == 3 ? 10.0 : unit == 4 ? 1.0 : unit == 5 ? 1e-3 : 0.0;
+}
+
+ExifCamera CameraOf(const Exiv2::ExifData& exif) {
+  ExifCamera camera;
+  camera.maker = Text(exif, "Exif.Image.Make");
+  camera.model = Text(exif, "Exif.Image.Model");
+  camera.lens = Text(exif, "Exif.Photo.LensModel");
+  camera.serial = Text(exif, "Exif.Photo.BodySerialNumber");
+  camera.focal_mm = Measure(exif, "Exif.Photo.FocalLength");
+  camera.focal_35mm = Measure(exif, "Exif.Photo.FocalLengthIn35mmFilm");
+  camera.digital_zoom = Measure(exif, "Exif.Photo.DigitalZoomRatio");
+  const double unit_mm = UnitMm(exif);
+  if (unit_mm > 0) {
+    camera.pixels_per_mm = Measure(exif, "Exif.Photo.FocalPlaneXResolution") / unit_mm;
+  }
+  camera.taken_width = Measure(exif, "Exif.Photo.PixelXDimension");
+  camera.taken_height = Measure(exif, "Exif.Photo.PixelYDimension");
+  return camera;
 }
 
 // Degrees, minutes and seconds; minutes and seconds may be missing.
@@ -75,13 +79,12 @@ std::optional<GeoPosition> Gps(const Exiv2::ExifData& exif) {
   return gps;
 }
 
-ExifInfo InfoOf(const Exiv2::ExifData& exif, ImageSize size) {
+ExifInfo InfoOf(const Exiv2::ExifData& exif) {
   ExifInfo info;
-  info.focal_length_px = FocalLength(exif, size);
+  info.camera = CameraOf(exif);
   const double orientation = Number(exif, "Exif.Image.Orientation").value_or(1);
   if (orientation >= 1 && orientation <= 8) info.orientation = static_cast<int>(orientation);
   info.gps = Gps(exif);
-  info.camera_key = CameraKey(exif, size);
   return info;
 }
 
@@ -100,7 +103,7 @@ std::optional<Exiv2::ExifData> TryToRead(const std::filesystem::path& path) {
 
 }  // namespace
 
-ExifInfo ReadExif(const std::filesystem::path& path, ImageSize size) {
+ExifInfo ReadExif(const std::filesystem::path& path) {
   // Exiv2's XMP parser and its caches are shared by the process.
   static std::mutex mutex;
   const std::lock_guard<std::mutex> lock(mutex);
@@ -117,7 +120,7 @@ ExifInfo ReadExif(const std::filesystem::path& path, ImageSize size) {
     ReadAll(OpenImageFile(path));
     exif = TryToRead(path);
   }
-  return InfoOf(exif.value_or(Exiv2::ExifData()), size);
+  return InfoOf(exif.value_or(Exiv2::ExifData()));
 }
 
 }  // namespace colmap_seapoint

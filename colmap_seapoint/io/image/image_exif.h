@@ -3,22 +3,20 @@
 
 #include <filesystem>
 #include <optional>
-#include <string>
 
 #include "colmap_seapoint/base/geodesy.h"
-#include "colmap_seapoint/io/image/image_codecs.h"
+#include "colmap_seapoint/io/image/exif_camera.h"
 
 namespace colmap_seapoint {
 
 struct ExifInfo {
-  std::optional<double> focal_length_px;
+  ExifCamera camera;
   int orientation = 1;
   std::optional<GeoPosition> gps;
-  std::string camera_key;
 };
 
 // Pictures without EXIF, or with EXIF that cannot be read, give the defaults. Never prints; may be
 // called from several threads.
-ExifInfo ReadExif(const std::filesystem::path& path, ImageSize size);
+ExifInfo ReadExif(const std::filesystem::path& path);
 
 }  // namespace colmap_seapoint

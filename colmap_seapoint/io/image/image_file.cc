@@ -281,14 +281,13 @@ bool IsSafeImageName(const std::string& name) {
 
 ImageInfo ReadImageInfo(const std::filesystem::path& path) {
   const ImageSize size = ReadSize(OpenImageFile(path));
-  ExifInfo exif = ReadExif(path, size);
+  ExifInfo exif = ReadExif(path);
   ImageInfo info;
   info.width = size.width;
   info.height = size.height;
-  info.focal_length_px = exif.focal_length_px;
   info.exif_orientation = exif.orientation;
   info.gps = exif.gps;
-  info.camera_key = std::move(exif.camera_key);
+  info.camera = std::move(exif.camera);
   return info;
 }
 

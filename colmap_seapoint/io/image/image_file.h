@@ -11,6 +11,7 @@
 #include "colmap_seapoint/base/geodesy.h"
 #include "colmap_seapoint/base/image.h"
 #include "colmap_seapoint/base/picture.h"
+#include "colmap_seapoint/io/image/exif_camera.h"
 
 namespace colmap_seapoint {
 
@@ -30,10 +31,9 @@ bool IsSafeImageName(const std::string& name);
 struct ImageInfo {
   int width = 0;  // as stored: the EXIF orientation is not applied, as in COLMAP
   int height = 0;
-  std::optional<double> focal_length_px;  // from EXIF, by COLMAP's rules, in pixels of this picture
-  int exif_orientation = 1;               // 1..8; not 1: the picture is stored turned
-  std::optional<GeoPosition> gps;         // from EXIF; altitude 0 when it tells none
-  std::string camera_key;  // make, model, focal length, size: pictures of one camera share it
+  int exif_orientation = 1;        // 1..8; not 1: the picture is stored turned
+  std::optional<GeoPosition> gps;  // from EXIF; altitude 0 when it tells none
+  ExifCamera camera;
 };
 
 // Reads the header (and EXIF) only. Throws Error for missing, zero-byte, unreadable files.

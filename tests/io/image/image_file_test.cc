@@ -172,32 +172,55 @@ TEST(Images, SixteenBitsAndAlpha) {
   }
 }
 
-TEST(ImageInfo, FocalLengthByColmapsRules) {
+TEST(ImageInfo, CameraAsExifHasIt) {
   const TempDir dir;
   WriteImage(dir / "a.jpg", MakeColor(400, 300));
   const ImageInfo plain = ReadImageInfo(dir / "a.jpg");
   EXPECT_EQ(plain.width, 400);
   EXPECT_EQ(plain.height, 300);
-  EXPECT_FALSE(plain.focal_length_px);
   EXPECT_EQ(plain.exif_orientation, 1);
+  EXPECT_EQ(plain.camera.maker, "");
+  EXPECT_EQ(plain.camera.focal_mm, 0);
 
-  AddExif(dir / "a.jpg", {{"Exif.Image.Make", "Sea"},
+  AddExif(dir / "a.jpg", {{"Exif.Image.Make", "Sea "},
                           {"Exif.Image.Model", "Eye"},
+                          {"Exif.Photo.LensModel", "17 mm"},
+                          {"Exif.Photo.BodySerialNumber", "A1234"},
                           {"Exif.Photo.FocalLength", "80/10"},
+                          {"Exif.Photo.FocalLengthIn35mmFilm", "28"},
+                          {"Exif.Photo.DigitalZoomRatio", "3/2"},
                           {"Exif.Photo.PixelXDimension", "4000"},
+                          {"Exif.Photo.PixelYDimension", "3000"},
                           {"Exif.Photo.FocalPlaneXResolution", "4000/8"},
                           {"Exif.Photo.FocalPlaneResolutionUnit", "3"}});
-  const ImageInfo resolution = ReadImageInfo(dir / "a.jpg");
-  // 8 mm on a sensor of 4000 / 500 cm = 80 mm, 400 pixels wide here.
-  ASSERT_TRUE(resolution.focal_length_px);
-  EXPECT_NEAR(*resolution.focal_length_px, 8.0 / 80.0 * 400, 1e-9);
-  EXPECT_NE(resolution.camera_key.find("Sea-Eye-"), std::string::npos);
+  const ExifCamera camera = ReadImageInfo(dir / "a.jpg").camera;
+  EXPECT_EQ(camera.maker, "Sea");
+  EXPECT_EQ(camera.model, "Eye");
+  EXPECT_EQ(camera.lens, "17 mm");
+  EXPECT_EQ(camera.serial, "A1234");
+  EXPECT_EQ(camera.focal_mm, 8);
+  EXPECT_EQ(camera.focal_35mm, 28);
+  EXPECT_EQ(camera.digital_zoom, 1.5);
+  EXPECT_EQ(camera.taken_width, 4000);
+  EXPECT_EQ(camera.taken_height, 3000);
+  EXPECT_EQ(camera.pixels_per_mm, 50);
+}
 
-  AddExif(dir / "a.jpg", {{"Exif.Photo.FocalLengthIn35mmFilm", "28"}});
-  EXPECT_NEAR(ReadImageInfo(dir / "a.jpg").focal_length_px.value(), 28.0 / 35.0 * 400, 1e-9);
-  AddExif(dir / "a.jpg", {{"Exif.Photo.FocalLengthIn35mmFilm", "0"},
-                          {"Exif.Photo.FocalPlaneXResolution", "4000/0"}});
-  EXPECT_FALSE(ReadImageInfo(dir / "a.jpg").focal_length_px);
+TEST(ImageInfo, WhatExifCannotMeanIsNothing) {
+  const TempDir dir;
+  WriteImage(dir / "a.jpg", MakeColor(400, 300));
+  AddExif(dir / "a.jpg", {{"Exif.Photo.FocalLength", "8/0"},
+                          {"Exif.Photo.FocalLengthIn35mmFilm", "0"},
+                          {"Exif.Photo.DigitalZoomRatio", "0/0"},
+                          {"Exif.Photo.PixelXDimension", "0"},
+                          {"Exif.Photo.FocalPlaneXResolution", "4000/8"},
+                          {"Exif.Photo.FocalPlaneResolutionUnit", "1"}});
+  const ExifCamera camera = ReadImageInfo(dir / "a.jpg").camera;
+  EXPECT_EQ(camera.focal_mm, 0);
+  EXPECT_EQ(camera.focal_35mm, 0);
+  EXPECT_EQ(camera.digital_zoom, 0);
+  EXPECT_EQ(camera.taken_width, 0);
+  EXPECT_EQ(camera.pixels_per_mm, 0);
 }
 
 TEST(ImageInfo, GpsPosition) {
