@@ -6,8 +6,13 @@
 #include <optional>
 #include <utility>
 
+#include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/image/image_file.h"
+#include "colmap_seapoint/lens/choose_lens.h"
+#include "colmap_seapoint/lens/ground_bend.h"
+#include "colmap_seapoint/lens/lens_doubt.h"
 #include "colmap_seapoint/mapping/retriangulate.h"
 #include "colmap_seapoint/mapping/sound_adjustment.h"
 #include "colmap_seapoint/remeasuring/remeasure_observations.h"
@@ -71,11 +76,27 @@ std::optional<SparseModel> MeasuredAgain(const SparseModel& model, const Adjustm
   return std::nullopt;
 }
 
+// Of the lens and of the ground's bend.
+std::string WhatIsKnown(const LensChoice& choice, const BundleAdjustment& adjustment) {
+  const auto frame = FindGroundFrame(adjustment.model);
+  return "; " + choice.said +
+         (frame ? "; " + Say(DoubtOf(adjustment, *frame, choice.bend)) : std::string());
+}
+
 std::string Refusal(const char* what, const std::string& fault) {
   return fault.empty() ? "" : std::string("; ") + what + " refused: " + fault;
 }
 
 }  // namespace
+
+std::map<uint32_t, double> PriorFocals(const fs::path& database_path) {
+  std::map<uint32_t, double> focals;
+  if (!fs::exists(database_path)) return focals;
+  const ColmapDatabase database(database_path, ColmapDatabase::Mode::kReadOnly,
+                                ColmapDatabase::Check::kNone);
+  for (const auto& [id, camera] : ReadCameras(database)) focals[id] = camera.MeanFocal();
+  return focals;
+}
 
 double ReprojectionError(const SparseModel& model) {
   double sum = 0;
@@ -101,12 +122,13 @@ LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
   result.model = ReadSparseModel(folder);
   const Camera lens_before = result.model.cameras.begin()->second;
   LensLimits limits;
-  limits.frees_principal_point = job.frees_principal_point;
+  limits.form = FirstForm(job.frees_principal_point);
+  limits.prior_focals = job.prior_focals;
   limits.num_threads = job.num_threads;
   SoundAdjustment first = AdjustSoundly(result.model, limits);
   const bool is_sound = first.fault.empty();
   result.distortion_is_sound = is_sound || !job.frees_distortion;
-  if (is_sound) result.model = WrittenAndRead(folder, std::move(first.model));
+  if (is_sound) result.model = WrittenAndRead(folder, std::move(first.adjustment.model));
 
   const TriangulationJob triangulation_job = {job.database_path, job.image_path, job.options,
                                               job.log_path};
@@ -114,15 +136,20 @@ LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
   if (triangulation.model) result.model = WrittenAndRead(folder, *std::move(triangulation.model));
 
   SoundAdjustment second;
+  std::string lens;
   if (is_sound) {
     if (auto measured = MeasuredAgain(result.model, job)) result.model = *std::move(measured);
+    const LensChoice choice =
+        ChooseLens({limits.form.principal_point, job.prior_focals, job.num_threads}, result.model);
+    limits.form = choice.form;
     limits.max_focal_ratio = kMaxFocalRatioOnceMore;
     limits.rejects_outliers = true;
-    second = AdjustSoundly(result.model, limits);
-    result.model = second.fault.empty() ? WrittenAndRead(folder, std::move(second.model))
+    second = AdjustSoundly(InForm(choice.form, std::move(result.model)), limits);
+    if (second.fault.empty()) lens = WhatIsKnown(choice, second.adjustment);
+    result.model = second.fault.empty() ? WrittenAndRead(folder, std::move(second.adjustment.model))
                                         : ReadSparseModel(folder);
   }
-  result.outcome = Outcome(lens_before, result.model.cameras.begin()->second) +
+  result.outcome = Outcome(lens_before, result.model.cameras.begin()->second) + lens +
                    Refusal("lens", first.fault) + Refusal("triangulation", triangulation.fault) +
                    Refusal("second adjustment", second.fault);
   return result;

@@ -60,15 +60,16 @@ std::map<uint32_t, Camera> LearnLenses(const ColmapProgram& colmap, MapperCall c
   const SparseModel model = LargestModel(call.output_path);
   if (2 * model.images.size() < call.pictures.size()) return {};
   LensLimits limits;
-  limits.frees_principal_point = frees_principal_point;
+  limits.form = FirstForm(frees_principal_point);
   limits.num_threads = num_threads;
-  const SoundAdjustment adjusted = AdjustSoundly(model, limits);
-  if (!adjusted.fault.empty()) return {};
+  const SoundAdjustment sound = AdjustSoundly(model, limits);
+  if (!sound.fault.empty()) return {};
+  const SparseModel& adjusted = sound.adjustment.model;
   std::map<uint32_t, Camera> lenses;
-  for (const PosedImage& image : adjusted.model.images) {
-    lenses.emplace(image.camera_id, adjusted.model.cameras.at(image.camera_id));
+  for (const PosedImage& image : adjusted.images) {
+    lenses.emplace(image.camera_id, adjusted.cameras.at(image.camera_id));
   }
-  LogInfo("Lens from " + std::to_string(adjusted.model.images.size()) + " pictures: focal length " +
+  LogInfo("Lens from " + std::to_string(adjusted.images.size()) + " pictures: focal length " +
           std::to_string(lenses.begin()->second.MeanFocal()) + " px");
   return lenses;
 }

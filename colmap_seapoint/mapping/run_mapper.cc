@@ -179,6 +179,7 @@ class MapperRounds {
     job.log_path = job_.log_folder / log;
     job.frees_distortion = trial.holds_distortion;
     job.frees_principal_point = job_.adjusts_principal_point;
+    job.prior_focals = PriorFocals(job_.database_path);
     job.num_threads = job_.num_threads;
     return job;
   }

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "examples/survey/paths/survey_camera.h"
@@ -62,6 +63,25 @@ PortCamera::PortCamera(const PortOptions& port, const Camera& in_water)
   const double tilt = port.tilt_deg * kRadPerDeg;
   if (port.kind == PortKind::kFlat) axis_ = {std::sin(tilt), 0, std::cos(tilt)};
   if (port.kind == PortKind::kDome && centre_.norm() > 0) axis_ = centre_.normalized();
+  if (HasPort()) MeasureReach();
+}
+
+// By the rays of the picture's border; without a bound where some of it is black.
+void PortCamera::MeasureReach() {
+  constexpr int kSteps = 8;
+  constexpr double kMargin = 1.1;
+  for (int k = 0; k < (kSteps + 1) * (kSteps + 1); ++k) {
+    const auto ray = Ray({in_water_.width * double(k % (kSteps + 1)) / kSteps,
+                          in_water_.height * double(k / (kSteps + 1)) / kSteps});
+    if (!ray) slope_ = std::numeric_limits<double>::infinity();
+    if (!ray) return;
+    slope_ = std::max(slope_, kMargin * ray->direction.head<2>().norm());
+    reach_ = std::max(reach_, kMargin * ray->origin.norm());
+  }
+}
+
+bool PortCamera::IsFarOutside(const Vector3d& point) const {
+  return HasPort() && point.head<2>().norm() > reach_ + slope_ * std::max(0.0, point.z());
 }
 
 std::optional<WaterRay> PortCamera::Refract(const Vector3d& in_air) const {
@@ -133,6 +153,7 @@ std::optional<Vector3d> PortCamera::DirectionInAir(const Vector3d& point) const 
 }
 
 std::optional<Eigen::Vector2d> PortCamera::ImgFromCam(const Vector3d& point) const {
+  if (IsFarOutside(point)) return std::nullopt;
   std::optional<Vector3d> direction = point;
   if (port_.kind == PortKind::kFlat &&
       !(point.dot(axis_) > port_.distance + port_.thickness && point.z() > 0)) {

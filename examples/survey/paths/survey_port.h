@@ -39,7 +39,8 @@ class PortCamera {
   // nullopt where the lens forms no picture.
   std::optional<WaterRay> Ray(const Eigen::Vector2d& pixel) const;
   // The pixel of a point in the water, camera frame: by the one way of light to the pupil. nullopt
-  // for points that are behind the glass or farther from the axis than the lens forms pictures.
+  // for points that are behind the glass, farther from the axis than the lens forms pictures, or
+  // well outside of the picture.
   std::optional<Eigen::Vector2d> ImgFromCam(const Eigen::Vector3d& point) const;
 
   const Camera& InWater() const { return in_water_; }
@@ -48,11 +49,16 @@ class PortCamera {
  private:
   std::optional<WaterRay> Refract(const Eigen::Vector3d& in_air) const;
   std::optional<Eigen::Vector3d> DirectionInAir(const Eigen::Vector3d& point) const;
+  void MeasureReach();
+  bool IsFarOutside(const Eigen::Vector3d& point) const;
   double Miss(const Eigen::Vector3d& across, double angle, const Eigen::Vector3d& point) const;
 
   PortOptions port_;
   Camera in_water_, lens_;
-  double max_tangent_;
+  double max_tangent_;  // of the lens, in air
+  // No place in the picture lies farther from the axis than `reach_` and this slope times its
+  // depth.
+  double reach_ = 0, slope_ = 0;
   Eigen::Vector3d axis_;    // all is symmetrical about it: the flat port's normal, or to the dome's
   Eigen::Vector3d centre_;  // of the dome
 };
