@@ -18,10 +18,10 @@ namespace {
 constexpr double kNoise = 2;
 constexpr double kLossSigmas = 3;
 constexpr double kMinSigma = 0.05;  // pixels
-constexpr int kMaxIterations = 25;
+constexpr int kMaxIterations = 15, kMaxFirstIterations = 8;
 // Observations of an adjustment, so that the choice costs seconds at most; small models are judged
 // by more of their tracks, since one in 20 would be a handful.
-constexpr size_t kFittedObservations = 20000, kHeldOutObservations = 20000;
+constexpr size_t kFittedObservations = 12000, kHeldOutObservations = 12000;
 constexpr size_t kManyTracks = 20000;
 constexpr size_t kEveryOfFew = 4, kEveryOfMany = 20;
 
@@ -105,16 +105,17 @@ const JudgedForm& Simplest(const std::vector<JudgedForm>& forms) {
   return *simplest;
 }
 
-std::vector<LensForm> FormsOf(const LensChoiceOptions& options, const SparseModel& model) {
+std::vector<std::vector<LensForm>> StepsOf(const LensChoiceOptions& options,
+                                           const SparseModel& model) {
   const auto is_default = [](const auto& camera) {
     return camera.second.model == CameraModel::kOpenCV;
   };
   if (std::all_of(model.cameras.begin(), model.cameras.end(), is_default)) {
-    return LensForms(options.principal_point);
+    return LensFormSteps(options.principal_point);
   }
   LensForm form = {model.cameras.begin()->second.model};
   form.principal_point = options.principal_point;
-  return {form};
+  return {{form}};
 }
 
 // What may be said against a form: that its camera has two focal lengths, and that its principal
@@ -130,14 +131,18 @@ std::vector<LensForm> Variants(const LensForm& form) {
   return variants;
 }
 
-Judging Prepare(const LensChoiceOptions& options, const LensForm& form, const SparseModel& model) {
+Judging Prepare(const LensChoiceOptions& options, const SparseModel& model) {
   TrackSplit split;
   split.held_out_every = model.points3D.size() < kManyTracks ? kEveryOfFew : kEveryOfMany;
   split.max_fitted_observations = kFittedObservations;
   split.max_held_out_observations = kHeldOutObservations;
   Judging judging = {options, Split(split, model)};
-  const SparseModel start = InForm(form, judging.tracks.fitted);
-  auto adjusted = AdjustBundleInFull(AdjustmentOf(options, form, start), start);
+  LensForm as_it_is;
+  as_it_is.principal_point = options.principal_point;
+  const SparseModel& start = judging.tracks.fitted;
+  BundleAdjustmentOptions adjustment = AdjustmentOf(options, as_it_is, start);
+  adjustment.max_num_iterations = kMaxFirstIterations;
+  auto adjusted = AdjustBundleInFull(adjustment, start);
   if (!adjusted) return judging;
   judging.sigma = std::max(adjusted->error_sigma, kMinSigma);
   judging.tracks.fitted = std::move(adjusted->model);
@@ -163,18 +168,23 @@ std::string Said(const std::vector<JudgedForm>& forms, const JudgedForm& chosen,
 }  // namespace
 
 LensChoice ChooseLens(const LensChoiceOptions& options, const SparseModel& model) {
-  const std::vector<LensForm> candidates = FormsOf(options, model);
+  const std::vector<std::vector<LensForm>> steps = StepsOf(options, model);
   LensChoice choice;
-  choice.form = candidates.front();
-  const Judging judging =
-      Prepare(options, candidates[std::min<size_t>(2, candidates.size() - 1)], model);
+  choice.form = steps.front().front();
+  const Judging judging = Prepare(options, model);
   std::vector<JudgedForm> judged;
   const auto judge_all = [&](const std::vector<LensForm>& forms) {
     for (const LensForm& form : forms) {
       if (auto one = Judge(judging, form)) judged.push_back(*std::move(one));
     }
   };
-  if (judging.sigma > 0) judge_all(candidates);
+  for (const std::vector<LensForm>& forms : steps) {
+    if (!(judging.sigma > 0)) break;
+    const size_t num_before = judged.size();
+    judge_all(forms);
+    const bool is_proven = judged.empty() || &Simplest(judged) >= judged.data() + num_before;
+    if (!is_proven) break;
+  }
   if (judged.empty()) {
     choice.said = Describe(choice.form) + " (too few tracks to judge lenses by)";
     return choice;

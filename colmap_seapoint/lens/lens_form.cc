@@ -104,15 +104,17 @@ LensParams Undistorted(const LensForm& form, const Camera& camera) {
 
 }  // namespace
 
-std::vector<LensForm> LensForms(PrincipalPoint principal_point) {
-  std::vector<LensForm> forms = {{CameraModel::kSimpleRadial},
-                                 {CameraModel::kRadial},
-                                 {CameraModel::kOpenCV},
-                                 {CameraModel::kOpenCVFisheye},
-                                 {CameraModel::kFullOpenCV, kDenominator},
-                                 {CameraModel::kFullOpenCV}};
-  for (LensForm& form : forms) form.principal_point = principal_point;
-  return forms;
+std::vector<std::vector<LensForm>> LensFormSteps(PrincipalPoint principal_point) {
+  std::vector<std::vector<LensForm>> steps = {{{CameraModel::kSimpleRadial}},
+                                              {{CameraModel::kRadial}},
+                                              {{CameraModel::kOpenCV},
+                                               {CameraModel::kOpenCVFisheye},
+                                               {CameraModel::kFullOpenCV, kDenominator}},
+                                              {{CameraModel::kFullOpenCV}}};
+  for (std::vector<LensForm>& forms : steps) {
+    for (LensForm& form : forms) form.principal_point = principal_point;
+  }
+  return steps;
 }
 
 LensForm WithTwoFocals(const LensForm& form) {

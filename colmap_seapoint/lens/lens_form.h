@@ -20,9 +20,10 @@ struct LensForm {
   PrincipalPoint principal_point = PrincipalPoint::kFree;
 };
 
-// Radial distortion of more and more terms, decentring, and the two that wide lenses and flat ports
-// ask for; each with one focal length. From the simplest on.
-std::vector<LensForm> LensForms(PrincipalPoint principal_point);
+// In steps, from the simplest form on, each of which is worth a look only where the one before
+// proved better than those before it: radial distortion of one term; of two; decentring, and what
+// wide lenses and flat ports ask for; all that OpenCV has. Each with one focal length.
+std::vector<std::vector<LensForm>> LensFormSteps(PrincipalPoint principal_point);
 
 // The same form with a focal length for each axis; of the models that have but one, that is OPENCV
 // without what they lack. The form itself where it has two, or is no form of ours.

@@ -171,7 +171,9 @@ int Ports(const std::vector<std::string>& arguments) {
           "GSD, sigma of the errors in px\n",
           c.name, altitude, truth.model.images.size());
       const SparseModel start = AsKnownBefore(truth.model, noise);
-      for (const LensForm& form : LensForms(PrincipalPoint::kFree)) PrintRow(truth, start, form);
+      for (const auto& forms : LensFormSteps(PrincipalPoint::kFree)) {
+        for (const LensForm& form : forms) PrintRow(truth, start, form);
+      }
       PrintChoice(truth, start);
       std::fflush(stdout);
     }
