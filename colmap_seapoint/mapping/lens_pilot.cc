@@ -8,6 +8,7 @@
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/colmap/database_matches.h"
+#include "colmap_seapoint/lens/choose_lens.h"
 #include "colmap_seapoint/mapping/sound_adjustment.h"
 #include "colmap_seapoint/tracks/pilot_pictures.h"
 
@@ -62,7 +63,13 @@ std::map<uint32_t, Camera> LearnLenses(const ColmapProgram& colmap, MapperCall c
   LensLimits limits;
   limits.form = FirstForm(frees_principal_point);
   limits.num_threads = num_threads;
-  const SoundAdjustment sound = AdjustSoundly(model, limits);
+  SoundAdjustment sound = AdjustSoundly(model, limits);
+  if (!sound.fault.empty()) return {};
+  LensChoiceOptions choice;
+  choice.principal_point = limits.form.principal_point;
+  choice.num_threads = num_threads;
+  limits.form.has_two_focals = ChooseLens(choice, sound.adjustment.model).form.has_two_focals;
+  if (limits.form.has_two_focals) sound = AdjustSoundly(sound.adjustment.model, limits);
   if (!sound.fault.empty()) return {};
   const SparseModel& adjusted = sound.adjustment.model;
   std::map<uint32_t, Camera> lenses;
