@@ -16,6 +16,7 @@
 #include "colmap_seapoint/lens/choose_lens.h"
 #include "colmap_seapoint/lens/ground_bend.h"
 #include "colmap_seapoint/lens/held_out_tracks.h"
+#include "colmap_seapoint/lens/refraction_sign.h"
 #include "examples/subcommands.h"
 #include "examples/survey/alignment.h"
 #include "examples/survey/scene/noise.h"
@@ -129,9 +130,12 @@ void PrintChoice(const SurveyTruth& truth, const SparseModel& start) {
   if (frame) options.centre_weights = CurvatureWeights(model, *frame);
   const auto adjusted = AdjustBundleInFull(options, model);
   if (!adjusted || !frame) return;
-  std::printf("  chosen: %s; bend %.2f GSD, said to be within %.2f (noise) and %.2f (forms)\n",
-              choice.said.c_str(), BendsOf(truth, adjusted->model).of_ground / truth.gsd,
-              2 * adjusted->centre_sigma * 25 / truth.gsd, choice.bend * 25 / truth.gsd);
+  std::printf(
+      "  chosen: %s; bend %.2f GSD, said to be within %.2f (noise) and %.2f (forms); "
+      "sign of refraction %.1f\n",
+      choice.said.c_str(), BendsOf(truth, adjusted->model).of_ground / truth.gsd,
+      2 * adjusted->centre_sigma * 25 / truth.gsd, choice.bend * 25 / truth.gsd,
+      RefractionSign(adjusted->model));
 }
 
 int Ports(const std::vector<std::string>& arguments) {
@@ -206,9 +210,11 @@ int Bend(const std::vector<std::string>& arguments) {
   const SurveyTruth truth = ReadSurveyTruth(survey_path);
   const SparseModel model = ReadSparseModel(input_path);
   const Bends bends = BendsOf(truth, model);
-  std::printf("over 10 m: ground %.2f GSD, camera centres %.2f GSD; centres rms %.3f mm\n",
-              bends.of_ground / truth.gsd, bends.of_centres / truth.gsd,
-              1000 * AlignCentres(truth.model, model, false).rms);
+  std::printf(
+      "over 10 m: ground %.2f GSD, camera centres %.2f GSD; centres rms %.3f mm; sign of "
+      "refraction %.1f\n",
+      bends.of_ground / truth.gsd, bends.of_centres / truth.gsd,
+      1000 * AlignCentres(truth.model, model, false).rms, RefractionSign(model));
   return 0;
 }
 
