@@ -61,10 +61,11 @@ Eigen::VectorXd SquareWeights(const std::vector<Eigen::Vector3d>& places, const 
     const double u = frame.along.dot(off) / scale, v = frame.across.dot(off) / scale;
     design.row(i) << 1, u, v, u * u, u * v, v * v;
   }
+  // By the normal equations: the places may be hundreds of thousands.
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-  solver.setThreshold(kRankThreshold);
-  solver.compute(design);
-  return solver.pseudoInverse().row(3) / (scale * scale);
+  solver.setThreshold(kRankThreshold * kRankThreshold);
+  solver.compute(design.transpose() * design);
+  return design * solver.solve(Eigen::VectorXd::Unit(6, 3)) / (scale * scale);
 }
 
 // Half of the way along that the places take up.
