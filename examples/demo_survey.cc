@@ -68,9 +68,22 @@ void AddWaterOptions(po::options_description* description, SurveyOptions* o) {
       "that the pictures see, metres; 0: 3.5 x altitude (descent: 5 x) where they show open water");
 }
 
+void AddPortOptions(po::options_description* description, PortOptions* port, std::string* kind) {
+  auto add = description->add_options();
+  add("port", Default(kind), "none, flat or dome: the window between camera and water, refracting");
+  add("port_thickness", Default(&port->thickness), "of its glass, metres");
+  add("port_distance", Default(&port->distance),
+      "flat: of the entrance pupil to the glass, metres");
+  add("port_tilt", Default(&port->tilt_deg), "flat: about the camera's y, degrees, -10..10");
+  add("port_radius", Default(&port->radius), "dome: of its outside, metres");
+  add("port_decentring", Default(&port->decentring),
+      "dome: its centre before the entrance pupil, metres");
+  add("port_sideways", Default(&port->sideways), "dome: its centre aside of the axis, metres");
+}
+
 int Generate(const std::vector<std::string>& arguments) {
   SurveyOptions o;
-  std::string output_path, path = SurveyPathName(o.path), camera_model = "OPENCV";
+  std::string output_path, path = SurveyPathName(o.path), camera_model = "OPENCV", port = "none";
   po::options_description description("demo_survey generate");
   auto add = description.add_options();
   add("help,h", "this text");
@@ -81,9 +94,11 @@ int Generate(const std::vector<std::string>& arguments) {
   AddTrackOptions(&description, &o);
   AddPictureOptions(&description, &o);
   AddWaterOptions(&description, &o);
+  AddPortOptions(&description, &o.port, &port);
   add("num_threads", Default(&o.num_threads), "-1 = all");
   if (!ParseOptions(description, arguments)) return 0;
   o.path = ParseSurveyPath(path);
+  o.port.kind = ParsePortKind(port);
   o.camera_model = ParseSurveyCameraModel(camera_model);
   const std::string problem = CheckSurveyOptions(o);
   if (!problem.empty()) throw UsageError(problem);

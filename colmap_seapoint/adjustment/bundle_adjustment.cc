@@ -56,16 +56,31 @@ double ErrorsToResiduals(const Bundle& bundle) {
   return num_residuals > num_free ? std::sqrt(num_residuals / (num_residuals - num_free)) : 1;
 }
 
-std::map<uint32_t, std::vector<double>> LensSigmas(const Bundle& bundle,
-                                                   const BundleMinimizer& minimizer,
-                                                   double error_sigma) {
-  std::map<uint32_t, std::vector<double>> sigmas;
+// As many as each lens has, by camera id.
+std::map<uint32_t, std::vector<double>> ById(const Bundle& bundle,
+                                             const std::vector<LensParams>& of_lenses) {
+  std::map<uint32_t, std::vector<double>> by_id;
   for (size_t c = 0; c < bundle.lenses.size(); ++c) {
-    const LensParams of_lens = minimizer.LensSigmas(c, error_sigma);
     const int count = FindCameraModel(static_cast<int>(bundle.lenses[c].model))->num_params;
-    sigmas[bundle.camera_id[c]].assign(of_lens.begin(), of_lens.begin() + count);
+    by_id[bundle.camera_id[c]].assign(of_lenses[c].begin(), of_lenses[c].begin() + count);
   }
-  return sigmas;
+  return by_id;
+}
+
+void AddSpreads(const BundleAdjustmentOptions& options, const Bundle& bundle,
+                const BundleMinimizer& minimizer, const BundleValues& values,
+                BundleAdjustment* adjustment) {
+  std::vector<LensParams> sigmas;
+  for (size_t c = 0; c < bundle.lenses.size(); ++c) {
+    sigmas.push_back(minimizer.LensSigmas(c, adjustment->error_sigma));
+  }
+  adjustment->lens_sigmas = ById(bundle, sigmas);
+  if (options.centre_weights.empty()) return;
+  std::vector<Eigen::Vector3d> weights;
+  for (uint32_t image : bundle.image_idx) weights.push_back(options.centre_weights.at(image));
+  const LinearSpread spread = minimizer.SpreadOfCentres(weights, values, adjustment->error_sigma);
+  adjustment->centre_sigma = spread.sigma;
+  adjustment->centre_correlations = ById(bundle, spread.correlations);
 }
 
 // Points that only one picture sees are put on its ray again, as far from it as they were.
@@ -131,7 +146,7 @@ std::optional<BundleAdjustment> AdjustBundleInFull(const BundleAdjustmentOptions
     minimize({*options.last_loss, options.last_scale * sigma});
   }
   adjustment.error_sigma = ErrorsToResiduals(bundle) * ResidualSigma(bundle, values);
-  adjustment.lens_sigmas = LensSigmas(bundle, minimizer, adjustment.error_sigma);
+  AddSpreads(options, bundle, minimizer, values, &adjustment);
   adjustment.model = model;
   WriteValues(bundle, values, &adjustment.model);
   CarryLonePoints(model, bundle.point_id, &adjustment.model);

@@ -30,7 +30,10 @@ struct BundleAdjustmentOptions {
   std::optional<LossKind> last_loss = LossKind::kGemanMcClure;
   double last_scale = 3;  // standard deviations of the residuals, as estimated (robustly) by then
   int max_num_iterations = 100;  // of each of the two
-  int num_threads = 1;           // -1 = all cores; never changes a result
+  // Where the uncertainty of a linear function of the camera centres is asked for: what each
+  // picture's centre is multiplied by, one an image of the model. Empty: none is.
+  std::vector<Eigen::Vector3d> centre_weights;
+  int num_threads = 1;  // -1 = all cores; never changes a result
 };
 
 struct BundleAdjustment {
@@ -42,6 +45,10 @@ struct BundleAdjustment {
   // By camera id, one for each parameter (0: held): their standard deviations, were the errors
   // independent. They are not quite: take them for a lower bound.
   std::map<uint32_t, std::vector<double>> lens_sigmas;
+  // Of the function that `centre_weights` asks for, and how it goes with the lens, in the same
+  // order.
+  double centre_sigma = 0;
+  std::map<uint32_t, std::vector<double>> centre_correlations;
 };
 
 // The model with its poses, points and lenses adjusted, and the points' errors (pixels) set anew.

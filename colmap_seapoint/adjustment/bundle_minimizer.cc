@@ -1,5 +1,7 @@
 #include "colmap_seapoint/adjustment/bundle_minimizer.h"
 
+#include <Eigen/Geometry>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -22,6 +24,34 @@ constexpr double kMaxDecrement = kMaxStepInSigmas * kMaxStepInSigmas;
 // follow the poses make the step on that curve three times as long.
 constexpr int kPointSteps = 2;
 constexpr double kRounding = 1e-13;  // of the cost, relative
+
+// What of the weights no shift, turn or other scale of the whole moves: nothing holds these, so
+// that the rest's uncertainty has no bounds.
+std::vector<Eigen::Vector3d> WithoutFrame(const std::vector<Eigen::Vector3d>& weights,
+                                          const BundleValues& values) {
+  const auto n = static_cast<Eigen::Index>(weights.size());
+  Eigen::Matrix3Xd centres(3, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const BundlePose& pose = values.poses[static_cast<size_t>(i)];
+    centres.col(i) = -pose.rotation.transpose() * pose.translation;
+  }
+  centres.colwise() -= centres.rowwise().mean().eval();
+  Eigen::MatrixXd moves(3 * n, 7);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::Vector3d centre = centres.col(i);
+    auto rows = moves.middleRows<3>(3 * i);
+    rows.leftCols<3>().setIdentity();
+    for (int axis = 0; axis < 3; ++axis) {
+      rows.col(3 + axis) = Eigen::Vector3d::Unit(axis).cross(centre);
+    }
+    rows.col(6) = centre;
+  }
+  const Eigen::Map<const Eigen::VectorXd> all(weights[0].data(), 3 * n);
+  const Eigen::VectorXd rest = all - moves * moves.completeOrthogonalDecomposition().solve(all);
+  std::vector<Eigen::Vector3d> left(weights.size());
+  for (Eigen::Index i = 0; i < n; ++i) left[static_cast<size_t>(i)] = rest.segment<3>(3 * i);
+  return left;
+}
 
 // After a step that gained this share of what the linear problem promised (Nielsen's rule).
 double DampingFactor(double share) {
@@ -129,10 +159,9 @@ double BundleMinimizer::PriorCost(const BundleValues& values) const {
   double cost = 0;
   for (size_t c = 0; c < bundle_.lenses.size(); ++c) {
     const BundleLens& lens = bundle_.lenses[c];
-    for (int axis = 0; axis < 2; ++axis) {
-      const auto param = static_cast<size_t>(NumFocals(lens.model) + axis);
-      const double off = values.lenses[c][param] - lens.principal_point[axis];
-      cost += 0.5 * lens.principal_point_weight * off * off;
+    for (size_t k = 0; k < kMaxLensParams; ++k) {
+      const double off = values.lenses[c][k] - lens.prior[k];
+      cost += 0.5 * lens.prior_weights[k] * off * off;
     }
   }
   return cost;
@@ -147,6 +176,32 @@ LensParams BundleMinimizer::LensSigmas(size_t lens, double sigma) const {
     sigmas[k] = sigma / loss_scale_ * std::sqrt(variance);
   }
   return sigmas;
+}
+
+LinearSpread BundleMinimizer::SpreadOfCentres(const std::vector<Eigen::Vector3d>& weights,
+                                              const BundleValues& values, double sigma) const {
+  // A pose's step by t, in the camera's frame, moves the centre by -R^T t, and a turn not at all.
+  Eigen::VectorXd functional = Eigen::VectorXd::Zero(system_.gradient.size());
+  const std::vector<Eigen::Vector3d> left = WithoutFrame(weights, values);
+  for (size_t i = 0; i < left.size(); ++i) {
+    functional.segment<3>(static_cast<Eigen::Index>(kBlockSize * i) + 3) =
+        -values.poses[i].rotation * left[i];
+  }
+  const Eigen::VectorXd solved = cholesky_.Solve(functional);
+  const double to_sigma = sigma / loss_scale_;
+  LinearSpread spread;
+  spread.sigma = to_sigma * std::sqrt(std::max(0.0, functional.dot(solved)));
+  for (size_t c = 0; c < bundle_.lenses.size(); ++c) {
+    const LensParams sigmas = LensSigmas(c, sigma);
+    LensParams& correlations = spread.correlations.emplace_back();
+    for (size_t k = 0; k < kMaxLensParams; ++k) {
+      if (!(sigmas[k] > 0 && spread.sigma > 0)) continue;
+      const double covariance =
+          to_sigma * to_sigma * solved[system_.LensIndex(c) + bundle_.lenses[c].slots[k]];
+      correlations[k] = covariance / (sigmas[k] * spread.sigma);
+    }
+  }
+  return spread;
 }
 
 }  // namespace colmap_seapoint

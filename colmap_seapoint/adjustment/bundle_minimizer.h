@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <vector>
 
 #include "colmap_seapoint/adjustment/reduced_system.h"
 
@@ -12,6 +13,13 @@ struct Minimum {
   double cost = 0;         // half the sum of RobustLoss::Cost
   int num_iterations = 0;  // steps tried
   bool is_converged = false;
+};
+
+// How uncertain a linear function of an adjustment's values is, and how that goes with the lenses'
+// parameters.
+struct LinearSpread {
+  double sigma = 0;
+  std::vector<LensParams> correlations;  // by lens, -1 to 1; 0 for what is held
 };
 
 class BundleMinimizer {
@@ -30,6 +38,10 @@ class BundleMinimizer {
   // After Run: the standard deviation of each parameter of a lens, all others being free, were the
   // errors of one coordinate `sigma` pixels; 0 for what is held.
   LensParams LensSigmas(size_t lens, double sigma) const;
+  // The same of a sum over the pictures' centres, each times a vector of its own, at `values`;
+  // without what the sum has of a shift, turn or scale of the whole.
+  LinearSpread SpreadOfCentres(const std::vector<Eigen::Vector3d>& weights,
+                               const BundleValues& values, double sigma) const;
 
  private:
   struct Trial {

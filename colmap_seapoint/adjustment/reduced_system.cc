@@ -195,16 +195,15 @@ void HoldRestOfLens(const Bundle& bundle, size_t lens, ReducedSystem* system) {
   }
 }
 
-void AddPrincipalPointPrior(const BundleLens& lens, const LensParams& params, size_t idx,
-                            ReducedSystem* system) {
-  for (int axis = 0; axis < 2; ++axis) {
-    const auto param = static_cast<size_t>(NumFocals(lens.model) + axis);
-    if (lens.slots[param] < 0) continue;
+void AddPriors(const BundleLens& lens, const LensParams& params, size_t idx,
+               ReducedSystem* system) {
+  for (size_t param = 0; param < kMaxLensParams; ++param) {
+    const double weight = lens.prior_weights[param];
+    if (weight == 0) continue;
     const Eigen::Index k = system->LensIndex(idx) + lens.slots[param];
-    LensEntry(system, k, k) += lens.principal_point_weight;
-    system->diagonal[k] += lens.principal_point_weight;
-    system->gradient[k] +=
-        lens.principal_point_weight * (params[param] - lens.principal_point[axis]);
+    LensEntry(system, k, k) += weight;
+    system->diagonal[k] += weight;
+    system->gradient[k] += weight * (params[param] - lens.prior[param]);
   }
 }
 
@@ -270,7 +269,7 @@ void Reduce(const Bundle& bundle, const BundleValues& values, const RobustLoss& 
   }
   for (size_t c = 0; c < bundle.lenses.size(); ++c) {
     HoldRestOfLens(bundle, c, system);
-    AddPrincipalPointPrior(bundle.lenses[c], values.lenses[c], c, system);
+    AddPriors(bundle.lenses[c], values.lenses[c], c, system);
   }
 }
 

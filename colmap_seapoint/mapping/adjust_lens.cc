@@ -9,7 +9,11 @@
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/image/image_file.h"
+#include "colmap_seapoint/lens/choose_lens.h"
+#include "colmap_seapoint/lens/ground_bend.h"
+#include "colmap_seapoint/lens/lens_doubt.h"
 #include "colmap_seapoint/mapping/retriangulate.h"
 #include "colmap_seapoint/mapping/sound_adjustment.h"
 #include "colmap_seapoint/remeasuring/remeasure_observations.h"
@@ -87,11 +91,56 @@ void BringBack(const fs::path& database_path, const fs::path& folder, SparseMode
   *model = WrittenAndRead(folder, std::move(*model));
 }
 
+// Of the lens and of the ground's bend.
+std::string WhatIsKnown(const LensChoice& choice, const BundleAdjustment& adjustment) {
+  const auto frame = FindGroundFrame(adjustment.model);
+  return "; " + choice.said +
+         (frame ? "; " + Say(DoubtOf(adjustment, *frame, choice.bend)) : std::string());
+}
+
 std::string Refusal(const char* what, const std::string& fault) {
   return fault.empty() ? "" : std::string("; ") + what + " refused: " + fault;
 }
 
+// Measures the observations again, chooses the form of the lens that they prove, unless it is held,
+// and adjusts once more. Returns what is known of the lens, or why the model stayed as it was.
+std::string MeasureAndAdjust(const AdjustmentJob& job, LensLimits limits, const fs::path& folder,
+                             SparseModel* model) {
+  if (auto measured = MeasuredAgain(*model, job)) *model = *std::move(measured);
+  limits.max_focal_ratio = kMaxFocalRatioOnceMore;
+  limits.rejects_outliers = true;
+  LensChoice choice;
+  if (!job.holds_lens) {
+    choice = ChooseLens({limits.form.principal_point, job.prior_focals, job.num_threads}, *model);
+    limits.form = choice.form;
+    *model = InForm(choice.form, std::move(*model));
+  }
+  SoundAdjustment last = AdjustSoundly(*model, limits);
+  if (!last.fault.empty()) {
+    *model = ReadSparseModel(folder);
+    return Refusal("second adjustment", last.fault);
+  }
+  const std::string known = job.holds_lens ? "" : WhatIsKnown(choice, last.adjustment);
+  *model = WrittenAndRead(folder, std::move(last.adjustment.model));
+  return known;
+}
+
+size_t NumContradicted(const AdjustmentJob& job, const SparseModel& model) {
+  return MisplacedPictures(CheckMatches(OpenedToRead(job.database_path), model),
+                           model.images.size())
+      .size();
+}
+
 }  // namespace
+
+std::map<uint32_t, double> PriorFocals(const fs::path& database_path) {
+  std::map<uint32_t, double> focals;
+  if (!fs::exists(database_path)) return focals;
+  for (const auto& [id, camera] : ReadCameras(OpenedToRead(database_path))) {
+    focals[id] = camera.MeanFocal();
+  }
+  return focals;
+}
 
 double ReprojectionError(const SparseModel& model) {
   double sum = 0;
@@ -117,13 +166,14 @@ LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
   result.model = ReadSparseModel(folder);
   const Camera lens_before = result.model.cameras.begin()->second;
   LensLimits limits;
-  limits.frees_principal_point = job.frees_principal_point;
+  limits.form = FirstForm(job.frees_principal_point);
+  limits.prior_focals = job.prior_focals;
   limits.holds_lens = job.holds_lens;
   limits.num_threads = job.num_threads;
   SoundAdjustment first = AdjustSoundly(result.model, limits);
   const bool is_sound = first.fault.empty();
   result.distortion_is_sound = is_sound || !job.frees_distortion;
-  if (is_sound) result.model = WrittenAndRead(folder, std::move(first.model));
+  if (is_sound) result.model = WrittenAndRead(folder, std::move(first.adjustment.model));
   BringBack(job.database_path, folder, &result.model);
 
   const TriangulationJob triangulation_job = {job.database_path, job.image_path, job.options,
@@ -135,22 +185,12 @@ LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
   }
   if (triangulation.model) result.model = WrittenAndRead(folder, *std::move(triangulation.model));
 
-  SoundAdjustment second;
-  if (is_sound) {
-    if (auto measured = MeasuredAgain(result.model, job)) result.model = *std::move(measured);
-    limits.max_focal_ratio = kMaxFocalRatioOnceMore;
-    limits.rejects_outliers = true;
-    second = AdjustSoundly(result.model, limits);
-    result.model = second.fault.empty() ? WrittenAndRead(folder, std::move(second.model))
-                                        : ReadSparseModel(folder);
-  }
-  result.num_contradicted =
-      MisplacedPictures(CheckMatches(OpenedToRead(job.database_path), result.model),
-                        result.model.images.size())
-          .size();
+  std::string last;
+  if (is_sound) last = MeasureAndAdjust(job, limits, folder, &result.model);
+  result.num_contradicted = NumContradicted(job, result.model);
   result.outcome = Outcome(lens_before, result.model.cameras.begin()->second) +
                    Refusal("lens", first.fault) + Refusal("triangulation", triangulation.fault) +
-                   Refusal("second adjustment", second.fault);
+                   last;
   return result;
 }
 

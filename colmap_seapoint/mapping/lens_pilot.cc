@@ -8,6 +8,7 @@
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/colmap/database_matches.h"
+#include "colmap_seapoint/lens/choose_lens.h"
 #include "colmap_seapoint/mapping/sound_adjustment.h"
 #include "colmap_seapoint/tracks/pilot_pictures.h"
 
@@ -60,15 +61,22 @@ std::map<uint32_t, Camera> LearnLenses(const ColmapProgram& colmap, MapperCall c
   const SparseModel model = LargestModel(call.output_path);
   if (2 * model.images.size() < call.pictures.size()) return {};
   LensLimits limits;
-  limits.frees_principal_point = frees_principal_point;
+  limits.form = FirstForm(frees_principal_point);
   limits.num_threads = num_threads;
-  const SoundAdjustment adjusted = AdjustSoundly(model, limits);
-  if (!adjusted.fault.empty()) return {};
+  SoundAdjustment sound = AdjustSoundly(model, limits);
+  if (!sound.fault.empty()) return {};
+  LensChoiceOptions choice;
+  choice.principal_point = limits.form.principal_point;
+  choice.num_threads = num_threads;
+  limits.form.has_two_focals = ChooseLens(choice, sound.adjustment.model).form.has_two_focals;
+  if (limits.form.has_two_focals) sound = AdjustSoundly(sound.adjustment.model, limits);
+  if (!sound.fault.empty()) return {};
+  const SparseModel& adjusted = sound.adjustment.model;
   std::map<uint32_t, Camera> lenses;
-  for (const PosedImage& image : adjusted.model.images) {
-    lenses.emplace(image.camera_id, adjusted.model.cameras.at(image.camera_id));
+  for (const PosedImage& image : adjusted.images) {
+    lenses.emplace(image.camera_id, adjusted.cameras.at(image.camera_id));
   }
-  LogInfo("Lens from " + std::to_string(adjusted.model.images.size()) + " pictures: focal length " +
+  LogInfo("Lens from " + std::to_string(adjusted.images.size()) + " pictures: focal length " +
           std::to_string(lenses.begin()->second.MeanFocal()) + " px");
   return lenses;
 }

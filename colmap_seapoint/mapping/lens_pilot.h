@@ -17,8 +17,10 @@ namespace colmap_seapoint {
 // Fewer pictures than this are their own pilot.
 inline constexpr size_t kMinPicturesOfPilot = 120;
 
-// The lenses, by camera_id, of the cameras that took the pilot's pictures; empty when no sound
-// model came of them. `call`: as the whole survey will be mapped, in an empty folder of its own.
+// As OPENCV, with two focal lengths where the pictures prove them (lens/choose_lens.h): the rest of
+// its form is chosen when all pictures have their say. The lenses, by camera_id, of the cameras
+// that took the pilot's pictures; empty when no sound model came of them. `call`: as the whole
+// survey will be mapped, in an empty folder of its own.
 std::map<uint32_t, Camera> LearnLenses(const ColmapProgram& colmap, MapperCall call,
                                        bool frees_principal_point, int num_threads);
 

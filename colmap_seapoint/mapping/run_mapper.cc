@@ -200,6 +200,7 @@ class MapperRounds {
     job.holds_lens = job_.lens == LensRule::kHold;
     job.frees_distortion = trial.holds_distortion;
     job.frees_principal_point = job_.adjusts_principal_point;
+    job.prior_focals = PriorFocals(job_.database_path);
     job.num_threads = job_.num_threads;
     return job;
   }

@@ -5,15 +5,14 @@
 #include <optional>
 #include <utility>
 
-#include "colmap_seapoint/adjustment/bundle_adjustment.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/lens/ground_bend.h"
 
 namespace colmap_seapoint {
 namespace {
 
 constexpr size_t kMinPictures = 3;
 constexpr double kMaxPrincipalPointChange = 0.05;  // share of the longer side
-constexpr double kMaxAspect = 1.01;                // of the focal lengths, up or down
 
 bool IsWithinRatio(double after, double before, double max_ratio) {
   return after <= max_ratio * before && before <= max_ratio * after;  // false for NaN
@@ -42,18 +41,6 @@ std::string Fault(const SparseModel& before, const SparseModel& after, double ma
   return "";
 }
 
-// Those whose focal lengths were less apart before.
-std::map<uint32_t, LensFreedom> LensesToTie(const SparseModel& before, const SparseModel& after) {
-  std::map<uint32_t, LensFreedom> ties;
-  for (const auto& [id, camera] : before.cameras) {
-    const Camera& adjusted = after.cameras.at(id);
-    if (!IsWithinRatio(camera.FocalX(), camera.FocalY(), kMaxAspect)) continue;
-    if (IsWithinRatio(adjusted.FocalX(), adjusted.FocalY(), kMaxAspect)) continue;
-    ties[id].ties_focals = true;
-  }
-  return ties;
-}
-
 std::map<uint32_t, LensFreedom> AllHeld(const SparseModel& model) {
   std::map<uint32_t, LensFreedom> lenses;
   for (const auto& [id, camera] : model.cameras) lenses[id].held_params = ~0u;
@@ -62,23 +49,28 @@ std::map<uint32_t, LensFreedom> AllHeld(const SparseModel& model) {
 
 }  // namespace
 
+LensForm FirstForm(bool frees_principal_point) {
+  LensForm form;
+  if (!frees_principal_point) form.principal_point = PrincipalPoint::kAsItWas;
+  return form;
+}
+
 SoundAdjustment AdjustSoundly(const SparseModel& before, const LensLimits& limits) {
   if (before.images.size() < kMinPictures) return {{}, "too few pictures"};
   BundleAdjustmentOptions options;
-  options.refine_principal_point = limits.frees_principal_point;
+  options.lenses = limits.holds_lens ? AllHeld(before)
+                                     : FreedomOfLenses(limits.form, before, limits.prior_focals);
   options.num_threads = limits.num_threads;
   if (!limits.rejects_outliers) options.last_loss.reset();
-  if (limits.holds_lens) options.lenses = AllHeld(before);
-  std::optional<SparseModel> after = AdjustBundle(options, before);
-  if (after && !limits.holds_lens) {
-    options.lenses = LensesToTie(before, *after);
-    if (!options.lenses.empty()) after = AdjustBundle(options, before);
+  if (const auto frame = FindGroundFrame(before)) {
+    options.centre_weights = CurvatureWeights(before, *frame);
   }
+  std::optional<BundleAdjustment> after = AdjustBundleInFull(options, before);
   if (!after) return {{}, "the adjustment failed"};
-  const std::string fault = Fault(before, *after, limits.max_focal_ratio);
+  const std::string fault = Fault(before, after->model, limits.max_focal_ratio);
   if (!fault.empty()) return {{}, fault};
-  SortImagesById(&*after);
-  return {std::move(*after), ""};
+  SortImagesById(&after->model);
+  return {*std::move(after), ""};
 }
 
 }  // namespace colmap_seapoint

@@ -1,15 +1,20 @@
 // A model adjusted with its lens free, and whether the lens that comes out can be one (ours).
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "colmap_seapoint/base/sparse_model.h"
+#include "colmap_seapoint/lens/lens_doubt.h"
+#include "colmap_seapoint/lens/lens_form.h"
 
 namespace colmap_seapoint {
 
 struct LensLimits {
   double max_focal_ratio = 2;  // to what it was, up or down
-  bool frees_principal_point = true;
+  // Of which the model's cameras are already; another model than the form's has no more free.
+  LensForm form;
+  std::map<uint32_t, double> prior_focals;  // lens_form.h
   // Observations that are far off shall count for nothing in the end; not worth its time before the
   // last adjustment.
   bool rejects_outliers = false;
@@ -17,16 +22,19 @@ struct LensLimits {
   bool holds_lens = false;  // all of it: poses and points alone are adjusted
 };
 
+// What a model is adjusted with before its lens is chosen: all of it is free but for a second focal
+// length, which poor pictures easily feign: at an entry portal fx and fy came out 3 % apart, and
+// the portal 102 mm beside its place.
+LensForm FirstForm(bool frees_principal_point);
+
 struct SoundAdjustment {
-  SparseModel model;  // of no use where there is a fault
+  BundleAdjustment adjustment;  // of no use where there is a fault; spread: of CurvatureWeights()
   std::string fault;  // why the model before is better kept; "" = nothing speaks against this one
 };
 
 // Adjusts poses, points and lenses (adjustment/bundle_adjustment.h). Sound is what keeps the focal
 // lengths within the limits and the principal points within a twentieth of the picture's longer
-// side. A lens has one focal length until the pictures prove two: where fx and fy come out more
-// than a hundredth apart, which no lens of ours has and poor pictures easily feign, the model is
-// adjusted once more with both the same. Pictures by their ids.
+// side. Pictures by their ids.
 SoundAdjustment AdjustSoundly(const SparseModel& before, const LensLimits& limits);
 
 }  // namespace colmap_seapoint

@@ -7,6 +7,7 @@
 #include "colmap_seapoint/base/parallel.h"
 #include "examples/survey/paths/survey_camera.h"
 #include "examples/survey/paths/survey_path.h"
+#include "examples/survey/paths/survey_port.h"
 #include "examples/survey/render/renderer.h"
 #include "examples/survey/scene/landmarks.h"
 #include "examples/survey/scene/seabed.h"
@@ -47,21 +48,22 @@ Surface MakeSurface(const SurveyOptions& options, const SparseModel& model) {
 }
 
 // From a raster of rays in every picture.
-double MeasureGsd(const SparseModel& model, const Surface& surface, double max_range) {
+double MeasureGsd(const SurveyTruth& truth) {
   constexpr int kSteps = 16;
   double sum = 0;
   int count = 0;
-  for (const PosedImage& image : model.images) {
-    const Camera& camera = model.cameras.at(image.camera_id);
+  for (const PosedImage& image : truth.model.images) {
+    const PortCamera port_camera(truth.port, truth.model.cameras.at(image.camera_id));
+    const Camera& camera = port_camera.InWater();
     const Rigid3d world_from_cam = image.cam_from_world.Inverse();
     for (int k = 0; k < kSteps * kSteps; ++k) {
-      const auto ray = camera.CamFromImg({camera.width * (k % kSteps + 0.5) / kSteps,
-                                          camera.height * (k / kSteps + 0.5) / kSteps});
+      const auto ray = port_camera.Ray({camera.width * (k % kSteps + 0.5) / kSteps,
+                                        camera.height * (k / kSteps + 0.5) / kSteps});
       if (!ray) continue;
-      const auto t = surface.IntersectRay(world_from_cam.translation,
-                                          world_from_cam.rotation * ray->homogeneous(), 0, kFarT);
-      if (!t || *t * ray->homogeneous().norm() > max_range) continue;
-      sum += GsdAt(camera, *t * ray->homogeneous());
+      const auto t = truth.surface.IntersectRay(world_from_cam * ray->origin,
+                                                world_from_cam.rotation * ray->direction, 0, kFarT);
+      if (!t || *t * ray->direction.norm() > truth.max_range) continue;
+      sum += GsdAt(camera, ray->origin + *t * ray->direction);
       ++count;
     }
   }
@@ -76,15 +78,16 @@ void AddExactPoints(const SurveyOptions& options, SurveyTruth* truth) {
   const size_t num_images = model->images.size();
   for (size_t k = 0; k < kPointsPerImage * num_images; ++k) {
     const PosedImage& seed_image = model->images[k % num_images];
-    const Camera& camera = model->cameras.at(seed_image.camera_id);
+    const PortCamera camera(truth->port, model->cameras.at(seed_image.camera_id));
     const auto random = [&](int axis) {
       return Uniform(Hash(static_cast<uint64_t>(options.seed) + 31, static_cast<int64_t>(k), axis));
     };
-    const auto ray = camera.CamFromImg({camera.width * random(0), camera.height * random(1)});
+    const auto ray =
+        camera.Ray({camera.InWater().width * random(0), camera.InWater().height * random(1)});
     if (!ray) continue;
     const Rigid3d world_from_cam = seed_image.cam_from_world.Inverse();
-    const Eigen::Vector3d direction = world_from_cam.rotation * ray->homogeneous();
-    const auto hit = truth->surface.Trace(world_from_cam.translation, direction, 0, kFarT);
+    const Eigen::Vector3d direction = world_from_cam.rotation * ray->direction;
+    const auto hit = truth->surface.Trace(world_from_cam * ray->origin, direction, 0, kFarT);
     if (!hit) continue;
     SparsePoint point;
     point.xyz = hit->xyz;
@@ -114,8 +117,9 @@ SurveyTruth MakeSurveyTruth(const SurveyOptions& options) {
   SurveyTruth truth;
   truth.model = PlanSurvey(options);
   truth.max_range = MaxRange(options);
+  truth.port = options.port;
   truth.surface = MakeSurface(options, truth.model);
-  truth.gsd = MeasureGsd(truth.model, truth.surface, truth.max_range);
+  truth.gsd = MeasureGsd(truth);
   AddExactPoints(options, &truth);
   return truth;
 }

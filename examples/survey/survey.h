@@ -15,6 +15,7 @@ namespace colmap_seapoint {
 struct SurveyTruth {
   SparseModel model;  // exact cameras; some exact points with the pictures that see them
   Surface surface;    // exact surface, in the model's frame
+  PortOptions port;   // what the pictures were taken through; the model's camera is as in water
   double gsd = 0;     // metres a pixel: mean over all that the pictures show (GsdAt)
   double max_range = std::numeric_limits<double>::infinity();  // metres; farther counts as unseen
 };

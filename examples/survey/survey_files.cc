@@ -53,7 +53,33 @@ nlohmann::ordered_json OptionsJson(const SurveyOptions& o) {
   if (o.roll_deg != 0) json["roll"] = o.roll_deg;
   if (o.max_range > 0) json["max_range"] = o.max_range;
   if (o.camera_model != CameraModel::kOpenCV) json["camera_model"] = CameraModelName(o);
+  if (o.port.kind != PortKind::kNone) json["port"] = PortKindName(o.port.kind);
   return json;
+}
+
+nlohmann::ordered_json PortJson(const PortOptions& port) {
+  nlohmann::ordered_json json = {{"kind", PortKindName(port.kind)}, {"thickness", port.thickness}};
+  if (port.kind == PortKind::kFlat) {
+    json["distance"] = port.distance;
+    json["tilt"] = port.tilt_deg;
+  } else {
+    json["radius"] = port.radius;
+    json["decentring"] = port.decentring;
+    json["sideways"] = port.sideways;
+  }
+  return json;
+}
+
+PortOptions ReadPort(const nlohmann::ordered_json& json) {
+  PortOptions port;
+  port.kind = ParsePortKind(json.at("kind").get<std::string>());
+  port.thickness = json.at("thickness");
+  port.distance = json.value("distance", port.distance);
+  port.tilt_deg = json.value("tilt", port.tilt_deg);
+  port.radius = json.value("radius", port.radius);
+  port.decentring = json.value("decentring", port.decentring);
+  port.sideways = json.value("sideways", port.sideways);
+  return port;
 }
 
 // The lens in the form that --ImageReader.camera_params takes, for runs with a calibrated camera.
@@ -175,6 +201,7 @@ void WriteSurveyTruth(const std::filesystem::path& dir, const SurveyOptions& opt
                                         {"camera_params", ParamsText(truth.model)},
                                         {"options", OptionsJson(options)}};
   if (std::isfinite(truth.max_range)) survey_json["max_range"] = truth.max_range;
+  if (truth.port.kind != PortKind::kNone) survey_json["port"] = PortJson(truth.port);
   WriteTextFile(truth_dir / "survey.json", survey_json.dump(2) + "\n");
 }
 
@@ -188,6 +215,11 @@ SurveyTruth ReadSurveyTruth(const std::filesystem::path& dir) {
   truth.gsd = json["gsd"];
   if (json.contains("max_range") && json["max_range"].is_number()) {
     truth.max_range = json["max_range"];
+  }
+  try {
+    if (json.contains("port")) truth.port = ReadPort(json["port"]);
+  } catch (const nlohmann::json::exception& e) {
+    throw Error((truth_dir / "survey.json").string(), e.what(), kRemedy);
   }
   truth.model = ReadSparseModel(truth_dir / "sparse");
   truth.surface = ReadSurface(truth_dir);

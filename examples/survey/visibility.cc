@@ -16,21 +16,17 @@ const double kParallaxCosine = std::cos(kMinParallaxDeg * kRadPerDeg);
 
 SurfaceVisibility::SurfaceVisibility(const SurveyTruth& truth)
     : surface_(&truth.surface), max_range_(truth.max_range) {
+  for (const auto& [id, camera] : truth.model.cameras) cameras_.try_emplace(id, truth.port, camera);
   for (const PosedImage& image : truth.model.images) {
-    const Camera& camera = truth.model.cameras.at(image.camera_id);
-    views_.push_back(
-        {image.cam_from_world, image.cam_from_world.OriginInSource(), &camera, MaxTangent(camera)});
+    views_.push_back({image.cam_from_world, image.cam_from_world.OriginInSource(),
+                      &cameras_.at(image.camera_id)});
   }
 }
 
 std::optional<Eigen::Vector2d> SurfaceVisibility::InFrame(const View& view,
                                                           const Eigen::Vector3d& point) const {
-  const Eigen::Vector3d in_cam = view.cam_from_world * point;
-  if (in_cam.z() <= 0 || in_cam.head<2>().norm() > view.max_tangent * in_cam.z()) {
-    return std::nullopt;
-  }
-  const auto pixel = view.camera->ImgFromCam(in_cam);
-  if (!pixel || !view.camera->InImage(*pixel)) return std::nullopt;
+  const auto pixel = view.camera->ImgFromCam(view.cam_from_world * point);
+  if (!pixel || !view.camera->InWater().InImage(*pixel)) return std::nullopt;
   if ((view.centre - point).norm() > max_range_) return std::nullopt;
   return pixel;
 }
@@ -52,7 +48,8 @@ std::optional<Eigen::Vector2d> SurfaceVisibility::Project(size_t image_idx,
 }
 
 Sighting SurfaceVisibility::SightingIn(const View& view, const Eigen::Vector3d& point) const {
-  return {GsdAt(*view.camera, view.cam_from_world * point), (view.centre - point).normalized()};
+  return {GsdAt(view.camera->InWater(), view.cam_from_world * point),
+          (view.centre - point).normalized()};
 }
 
 std::vector<Sighting> SurfaceVisibility::Sightings(const Eigen::Vector3d& point,

@@ -1,9 +1,11 @@
 // Which pictures truly see a place of the surface, and how well.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <vector>
 
+#include "examples/survey/paths/survey_port.h"
 #include "examples/survey/survey.h"
 
 namespace colmap_seapoint {
@@ -34,14 +36,14 @@ class SurfaceVisibility {
   struct View {
     Rigid3d cam_from_world;
     Eigen::Vector3d centre;
-    const Camera* camera;
-    double max_tangent;  // of the angle from the axis; beyond it the lens model means nothing
+    const PortCamera* camera;
   };
   std::optional<Eigen::Vector2d> InFrame(const View& view, const Eigen::Vector3d& point) const;
   Sighting SightingIn(const View& view, const Eigen::Vector3d& point) const;
 
   const Surface* surface_;
   double max_range_;
+  std::map<uint32_t, PortCamera> cameras_;
   std::vector<View> views_;
 };
 

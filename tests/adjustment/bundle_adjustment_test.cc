@@ -137,6 +137,18 @@ TEST(BundleAdjustmentTest, HoldsAndTiesWhatIsAsked) {
 }
 
 // GSD: 2 units / 900 pixels.
+TEST(BundleAdjustmentTest, APriorOfTheFocalLengthCountsByItsSigma) {
+  const SparseModel start = Disturbed(ExactSurvey(ExactLens(), 5));
+  BundleAdjustmentOptions options;
+  options.lenses[1].focal_prior = 950;
+  options.lenses[1].focal_sigma = 1e-4;
+  const Camera firm = AdjustBundle(options, start)->cameras.at(1);
+  EXPECT_NEAR(firm.FocalX(), 950, 0.5);
+  EXPECT_NEAR(firm.FocalY(), 950, 0.5);
+  options.lenses[1].focal_sigma = 500;
+  EXPECT_NEAR(AdjustBundle(options, start)->cameras.at(1).FocalX(), 900, 0.5);
+}
+
 TEST(BundleAdjustmentTest, AThousandPicturesBendBack) {
   const SparseModel exact = LawnMower(10, 100, 60);
   const SparseModel start = Bent(exact, 0.5);

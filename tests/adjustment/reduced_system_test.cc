@@ -59,8 +59,7 @@ TEST(ReducedSystemTest, IsTheDenseSchurComplement) {
     const auto param = static_cast<size_t>(2 + axis);
     const Eigen::Index k = system.LensIndex(camera_1) + bundle.lenses[camera_1].slots[param];
     normal(k, k) += 1.0 / 9;
-    gradient[k] +=
-        (values.lenses[camera_1][param] - bundle.lenses[camera_1].principal_point[axis]) / 9;
+    gradient[k] += (values.lenses[camera_1][param] - bundle.lenses[camera_1].prior[param]) / 9;
   }
   const auto corner = normal.bottomRightCorner(3 * num_points, 3 * num_points);
   const auto side = normal.topRightCorner(size, 3 * num_points);

@@ -102,11 +102,11 @@ TEST(SurveyPathTest, IllegalOptionsNameThemselves) {
 TEST(LensTableTest, IsExactToTwoThousandthsOfAPixel) {
   SurveyOptions options;
   const Camera camera = PlanSurvey(options).cameras.at(1);
-  const LensTable lens(camera);
+  const LensTable lens(PortCamera({}, camera));
   for (int k = 0; k < 2000; ++k) {
     const Eigen::Vector2d pixel(Uniform(Hash(1, k)) * camera.width,
                                 Uniform(Hash(2, k)) * camera.height);
-    const auto back = camera.ImgFromCam(*lens.Ray(pixel.x(), pixel.y()));
+    const auto back = camera.ImgFromCam(lens.Ray(pixel.x(), pixel.y())->direction);
     ASSERT_TRUE(back);
     EXPECT_LT((*back - pixel).norm(), 2e-3);
   }

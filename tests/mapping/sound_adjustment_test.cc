@@ -19,32 +19,62 @@ SparseModel SurveyOfAspect(double aspect) {
 }
 
 const Camera& LensOf(const SoundAdjustment& adjusted) {
-  return adjusted.model.cameras.begin()->second;
+  return adjusted.adjustment.model.cameras.begin()->second;
 }
 
-TEST(SoundAdjustmentTest, TwoFocalLengthsThatAreAlikeAreBelieved) {
-  const SoundAdjustment adjusted = AdjustSoundly(SurveyOfAspect(1.004), {});
-  ASSERT_EQ(adjusted.fault, "");
-  EXPECT_NEAR(LensOf(adjusted).FocalY() / LensOf(adjusted).FocalX(), 1.004, 1e-3);
+LensLimits TwoFocals() {
+  LensLimits limits;
+  limits.form.has_two_focals = true;
+  return limits;
 }
 
-TEST(SoundAdjustmentTest, TwoFocalLengthsThatNoLensHasBecomeOne) {
-  const SoundAdjustment adjusted = AdjustSoundly(SurveyOfAspect(1.03), {});
+TEST(SoundAdjustmentTest, TwoFocalLengthsAreFoundWhereTheFormHasThem) {
+  for (const double aspect : {1.004, 1.03}) {
+    const SoundAdjustment adjusted = AdjustSoundly(SurveyOfAspect(aspect), TwoFocals());
+    ASSERT_EQ(adjusted.fault, "");
+    EXPECT_NEAR(LensOf(adjusted).FocalY() / LensOf(adjusted).FocalX(), aspect, 1e-3);
+  }
+}
+
+TEST(SoundAdjustmentTest, TheFirstFormHasOne) {
+  LensLimits limits;
+  limits.form = FirstForm(true);
+  const SoundAdjustment adjusted = AdjustSoundly(SurveyOfAspect(1.03), limits);
   ASSERT_EQ(adjusted.fault, "");
   EXPECT_EQ(LensOf(adjusted).FocalY(), LensOf(adjusted).FocalX());
+  EXPECT_NE(LensOf(adjusted).PrincipalX(), SurveyOfAspect(1.03).cameras.at(1).PrincipalX());
+}
+
+TEST(SoundAdjustmentTest, PrincipalPointsThatAreHeldStay) {
+  LensLimits limits;
+  limits.form = FirstForm(false);
+  const SparseModel survey = SurveyOfAspect(1.004);
+  const SoundAdjustment adjusted = AdjustSoundly(survey, limits);
+  ASSERT_EQ(adjusted.fault, "");
+  EXPECT_EQ(LensOf(adjusted).PrincipalX(), survey.cameras.at(1).PrincipalX());
+}
+
+TEST(SoundAdjustmentTest, SaysHowWellTheBendIsKnown) {
+  const SoundAdjustment adjusted = AdjustSoundly(Disturbed(ExactSurvey(ExactLens(), 5)), {});
+  EXPECT_GT(adjusted.adjustment.centre_sigma, 0);
+  EXPECT_EQ(adjusted.adjustment.centre_correlations.at(1).size(), 8u);
 }
 
 TEST(SoundAdjustmentTest, WhatIsNotSoundNamesItsFault) {
-  EXPECT_EQ(AdjustSoundly(SurveyOfAspect(1.004), {1 + 1e-9}).fault,
-            "the focal length moved too far");
+  LensLimits limits;
+  limits.max_focal_ratio = 1 + 1e-9;
+  EXPECT_EQ(AdjustSoundly(SurveyOfAspect(1.004), limits).fault, "the focal length moved too far");
   EXPECT_EQ(AdjustSoundly(SparseModel(), {}).fault, "too few pictures");
 }
 
 TEST(SoundAdjustmentTest, TheSameForAnyNumberOfThreads) {
   const SparseModel survey = SurveyOfAspect(1.004);
-  const SoundAdjustment one = AdjustSoundly(survey, {2, true, true, 1});
-  const SoundAdjustment three = AdjustSoundly(survey, {2, true, true, 3});
+  LensLimits limits = TwoFocals();
+  const SoundAdjustment one = AdjustSoundly(survey, limits);
+  limits.num_threads = 3;
+  const SoundAdjustment three = AdjustSoundly(survey, limits);
   EXPECT_EQ(LensOf(one).params, LensOf(three).params);
+  EXPECT_EQ(one.adjustment.centre_sigma, three.adjustment.centre_sigma);
 }
 
 }  // namespace

@@ -68,10 +68,16 @@ BundleLens LensOf(const Camera& camera, const LensFreedom& freedom) {
       lens.slots[k] = lens.num_free++;
     }
   }
-  lens.principal_point = {camera.PrincipalX(), camera.PrincipalY()};
-  if (freedom.principal_point_sigma > 0) {
-    lens.principal_point_weight =
-        1 / (freedom.principal_point_sigma * freedom.principal_point_sigma);
+  const auto add_prior = [&](size_t param, double value, double sigma) {
+    if (lens.slots[param] < 0 || !(sigma > 0)) return;
+    lens.prior[param] = value;
+    lens.prior_weights[param] = 1 / (sigma * sigma);
+  };
+  add_prior(num_focals, camera.PrincipalX(), freedom.principal_point_sigma);
+  add_prior(num_focals + 1, camera.PrincipalY(), freedom.principal_point_sigma);
+  add_prior(0, freedom.focal_prior, freedom.focal_sigma);
+  if (num_focals == 2 && !freedom.ties_focals) {
+    add_prior(1, freedom.focal_prior, freedom.focal_sigma);
   }
   return lens;
 }

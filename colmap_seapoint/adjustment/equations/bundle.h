@@ -19,6 +19,8 @@ struct LensFreedom {
   bool ties_focals = false;  // fx = fy, from their mean on
   // Standard deviation of the principal point about where it was, pixels; 0: it moves freely.
   double principal_point_sigma = 0;
+  // Standard deviation of the focal lengths about `focal_prior`, pixels; 0: they are free.
+  double focal_prior = 0, focal_sigma = 0;
 
   bool Holds(size_t param) const { return (held_params >> param & 1) != 0; }
 };
@@ -27,8 +29,8 @@ struct BundleLens {
   CameraModel model = CameraModel::kSimplePinhole;
   std::array<int, kMaxLensParams> slots{};  // which free value a parameter is; -1: none, it stays
   int num_free = 0;
-  Eigen::Vector2d principal_point = Eigen::Vector2d::Zero();  // where the prior wants it
-  double principal_point_weight = 0;                          // 1 / pixels^2
+  // Where a prior wants focal lengths and principal point, and how much: 1 / pixels^2.
+  LensParams prior{}, prior_weights{};
 };
 
 struct BundlePose {  // cam_from_world

@@ -59,6 +59,18 @@ std::string SurveyPathName(SurveyPath path) {
   return "";
 }
 
+PortKind ParsePortKind(const std::string& name) {
+  for (const PortKind kind : {PortKind::kNone, PortKind::kFlat, PortKind::kDome}) {
+    if (name == PortKindName(kind)) return kind;
+  }
+  throw UsageError("--port is " + name + ", must be none, flat or dome");
+}
+
+std::string PortKindName(PortKind kind) {
+  if (kind == PortKind::kFlat) return "flat";
+  return kind == PortKind::kDome ? "dome" : "none";
+}
+
 std::string CheckSurveyOptions(const SurveyOptions& o) {
   std::ostringstream problem;
   const auto range = [&](const char* name, double value, double min, double max) {
@@ -78,7 +90,16 @@ std::string CheckSurveyOptions(const SurveyOptions& o) {
   range("pitch", o.pitch_deg, 10, 90);
   range("roll", o.roll_deg, -180, 180);
   range("max_range", o.max_range, 0, 100);
-  range("field_of_view", o.field_of_view_deg, 20, IsFisheyeSurvey(o) ? 150 : 80);
+  range("field_of_view", o.field_of_view_deg, 20,
+        IsFisheyeSurvey(o) && o.port.kind != PortKind::kFlat ? 150 : 80);
+  range("port_thickness", o.port.thickness, 0, 0.03);
+  range("port_distance", o.port.distance, 0, 0.2);
+  range("port_tilt", o.port.tilt_deg, -10, 10);
+  range("port_radius", o.port.radius, 0.04, 0.2);
+  // The entrance pupil stays well inside of the dome.
+  const double max_off = 0.4 * (o.port.radius - o.port.thickness);
+  range("port_decentring", o.port.decentring, -max_off, max_off);
+  range("port_sideways", o.port.sideways, -max_off, max_off);
   range("relief", o.relief, 0, 1.5);
   range("turbidity", o.turbidity, 0, 1);
   range("caustics", o.caustics, 0, 1);

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "colmap_seapoint/base/camera.h"
+#include "examples/survey/paths/survey_port.h"
 
 namespace colmap_seapoint {
 
@@ -34,6 +35,7 @@ struct SurveyOptions {
   double max_range = 0;           // metres; what is farther is lost in the water; 0: MaxRange()
   CameraModel camera_model = CameraModel::kOpenCV;  // or kOpenCVFisheye
   double field_of_view_deg = 60;                    // horizontal, under water
+  PortOptions port;                                 // between camera and water
   double relief = 1;       // factor on all heights of the seabed; 0 = a plane
   double turbidity = 0.3;  // 0 clear ... 1 murky
   double caustics = 0;     // 0 none ... 1 strong sunlight through waves
@@ -47,7 +49,9 @@ struct SurveyOptions {
 // By the names of the command line; throws UsageError for others.
 SurveyPath ParseSurveyPath(const std::string& name);
 CameraModel ParseSurveyCameraModel(const std::string& name);
+PortKind ParsePortKind(const std::string& name);
 std::string SurveyPathName(SurveyPath path);
+std::string PortKindName(PortKind kind);
 
 // "" or the whole sentence: option, value, rule.
 std::string CheckSurveyOptions(const SurveyOptions& options);

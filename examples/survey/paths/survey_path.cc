@@ -220,7 +220,7 @@ SparseModel PlanSurvey(const SurveyOptions& options) {
   return model;
 }
 
-Rectangle Footprint(const Camera& camera, const Rigid3d& cam_from_ground, double lowest,
+Rectangle Footprint(const PortCamera& camera, const Rigid3d& cam_from_ground, double lowest,
                     double reach) {
   const Rigid3d ground_from_cam = cam_from_ground.Inverse();
   const Eigen::Vector3d centre = ground_from_cam.translation;
@@ -228,11 +228,12 @@ Rectangle Footprint(const Camera& camera, const Rigid3d& cam_from_ground, double
   constexpr int kSteps = 8;
   for (int j = 0; j <= kSteps; ++j) {
     for (int i = 0; i <= kSteps; ++i) {
-      const auto ray = camera.CamFromImg(
-          {camera.width * double(i) / kSteps, camera.height * double(j) / kSteps});
+      const auto ray = camera.Ray({camera.InWater().width * double(i) / kSteps,
+                                   camera.InWater().height * double(j) / kSteps});
       if (!ray) continue;  // a black corner
-      const Eigen::Vector3d direction = ground_from_cam.rotation * ray->homogeneous();
-      const Eigen::Vector3d ground = GroundPlace(centre, direction, lowest, reach);
+      const Eigen::Vector3d direction = ground_from_cam.rotation * ray->direction;
+      const Eigen::Vector3d ground =
+          GroundPlace(ground_from_cam * ray->origin, direction, lowest, reach);
       box = Union(box, {ground.x(), ground.y(), ground.x(), ground.y()});
     }
   }
@@ -242,11 +243,12 @@ Rectangle Footprint(const Camera& camera, const Rigid3d& cam_from_ground, double
 Rectangle SurveyArea(const SurveyOptions& options, const SparseModel& model, double lowest) {
   const Rigid3d world_from_ground = WorldFromGround(options);
   const double reach = kFadeOut * MaxRange(options);
+  const PortCamera camera(options.port, model.cameras.at(1));
   Rectangle box{};
   for (size_t i = 0; i < model.images.size(); ++i) {
     Rigid3d pose = model.images[i].cam_from_world;
     if (options.path == SurveyPath::kWall) pose = pose * world_from_ground;
-    const Rectangle seen = Footprint(model.cameras.at(1), pose, lowest, reach);
+    const Rectangle seen = Footprint(camera, pose, lowest, reach);
     box = i == 0 ? seen : Union(box, seen);
   }
   if (options.path == SurveyPath::kCircle || options.path == SurveyPath::kStatue) {

@@ -3,6 +3,7 @@
 
 #include "colmap_seapoint/base/sparse_model.h"
 #include "examples/survey/paths/survey_options.h"
+#include "examples/survey/paths/survey_port.h"
 
 namespace colmap_seapoint {
 
@@ -27,7 +28,7 @@ struct Rectangle {
 
 // What a picture can see of a seabed no lower than `lowest`, no farther than `reach` metres from
 // the camera on the plan. `cam_from_ground`: ground's frame, z up.
-Rectangle Footprint(const Camera& camera, const Rigid3d& cam_from_ground, double lowest,
+Rectangle Footprint(const PortCamera& camera, const Rigid3d& cam_from_ground, double lowest,
                     double reach);
 
 // What has to be there of the seabed for all pictures.

@@ -70,11 +70,11 @@ void ChooseExposure(FloatImage* linear) {
 Renderer::Renderer(const SurveyOptions& options, const Camera& camera, const Surface& surface,
                    const Seabed& seabed)
     : options_(options),
-      camera_(camera),
+      camera_(options.port, camera),
       surface_(&surface),
       ground_colours_(GroundColours(surface, seabed)),
       object_colours_(ObjectColours(surface.Object(), seabed, options.num_threads)),
-      lens_(camera),
+      lens_(camera_),
       water_(MakeWater(options.turbidity, options.width)),
       gain_(ChooseGain(options, water_)) {}
 
@@ -120,14 +120,14 @@ Eigen::Array3f Renderer::Illumination(const View& view, const SurfaceHit& hit) c
 
 // Where a ray through the pixel of `point` meets the ground. The smooth ground around the point
 // says so; where it does not (edges), the ray is traced from the camera. All in the ground's frame.
-Eigen::Vector2d Renderer::GroundPlace(const View& view, const Eigen::Vector3d& cam_ray,
+Eigen::Vector2d Renderer::GroundPlace(const View& view, const WaterRay& cam_ray,
                                       const Eigen::Vector3d& point,
                                       const Eigen::Vector3d& normal) const {
   const HeightField& ground = surface_->Ground();
-  const Eigen::Vector3d& origin = view.ground_from_cam.translation;
+  const Eigen::Vector3d origin = view.ground_from_cam * cam_ray.origin;
   const double plane = normal.dot(point - origin);
   const double tolerance = 0.02 * surface_->CellSize();
-  const Eigen::Vector3d ray = view.ground_from_cam.rotation * cam_ray;
+  const Eigen::Vector3d ray = view.ground_from_cam.rotation * cam_ray.direction;
   const double approach = normal.dot(ray);
   double t = plane / approach;
   bool converged = false;
@@ -146,14 +146,14 @@ Eigen::Vector2d Renderer::GroundPlace(const View& view, const Eigen::Vector3d& c
 Eigen::Array2i Renderer::SamplesOf(const View& view, int x, int y, const SurfaceHit& hit) const {
   if (!ShowsOpenWater(options_)) return {2, 2};
   constexpr int kMost = 16;
-  const Eigen::Vector3d& origin = view.world_from_cam.translation;
-  const double plane = hit.normal.dot(hit.xyz - origin);
   Eigen::Array2i samples(2, 2);
   for (int axis = 0; axis < 2; ++axis) {
     const auto next = lens_.Ray(x + (axis == 0 ? 1.5 : 0.5), y + (axis == 1 ? 1.5 : 0.5));
     if (!next) continue;
-    const Eigen::Vector3d ray = view.world_from_cam.rotation * *next;
-    const double t = plane / std::min(hit.normal.dot(ray), -1e-3 * ray.norm());
+    const Eigen::Vector3d origin = view.world_from_cam * next->origin;
+    const Eigen::Vector3d ray = view.world_from_cam.rotation * next->direction;
+    const double t =
+        hit.normal.dot(hit.xyz - origin) / std::min(hit.normal.dot(ray), -1e-3 * ray.norm());
     const double way = (origin + t * ray - hit.xyz).norm() / surface_->CellSize();
     samples[axis] = static_cast<int>(std::clamp(std::ceil(2 * way), 2.0, double{kMost}));
   }
@@ -183,9 +183,9 @@ Eigen::Array3f Renderer::MeanAlbedo(const View& view, int x, int y, const Surfac
         lens_.Ray(x + (k % samples[0] + 0.5) / samples[0], y + (k / samples[0] + 0.5) / samples[1]);
     Eigen::Vector2d place = hit.texture;
     if (cam_ray && is_object) {
-      const auto there = surface_->Object().IntersectRay(view.world_from_cam.translation,
-                                                         view.world_from_cam.rotation * *cam_ray,
-                                                         0.5 * hit.t, 1.5 * hit.t);
+      const auto there = surface_->Object().IntersectRay(
+          view.world_from_cam * cam_ray->origin, view.world_from_cam.rotation * cam_ray->direction,
+          0.5 * hit.t, 1.5 * hit.t);
       if (there) place = surface_->Object().Step() * there->lattice;
     } else if (cam_ray) {
       place = GroundPlace(view, *cam_ray, point, normal);
@@ -199,12 +199,14 @@ Eigen::Array3f Renderer::PixelLight(const View& view, int x, int y) const {
   const auto cam_ray = lens_.Ray(x + 0.5, y + 0.5);
   if (!cam_ray) return Eigen::Array3f::Zero();
   const bool is_open = ShowsOpenWater(options_);
-  const Eigen::Vector3d& origin = view.world_from_cam.translation;
-  const auto hit = surface_->Trace(origin, view.world_from_cam.rotation * *cam_ray, 0, kFarT);
+  const Eigen::Vector3d origin = view.world_from_cam * cam_ray->origin;
+  const auto hit =
+      surface_->Trace(origin, view.world_from_cam.rotation * cam_ray->direction, 0, kFarT);
   SEAPOINT_CHECK(hit || is_open);  // the field covers every footprint
-  const float cosine = static_cast<float>(1 / cam_ray->norm());
-  const float vignette =
-      camera_.model == CameraModel::kOpenCVFisheye ? std::sqrt(cosine) : cosine * cosine * cosine;
+  const float cosine = static_cast<float>(1 / cam_ray->direction.norm());
+  const float vignette = camera_.InWater().model == CameraModel::kOpenCVFisheye
+                             ? std::sqrt(cosine)
+                             : cosine * cosine * cosine;
   const double range = MaxRange(options_);
   const float distance = hit ? static_cast<float>((hit->xyz - origin).norm()) : 0.0f;
   if (!hit || (is_open && distance >= kFadeOut * range)) return water_.open * gain_ * vignette;
@@ -243,10 +245,10 @@ Renderer::View Renderer::Prepare(const PosedImage& image, int num_threads) {
 
 ColorImage Renderer::Render(const PosedImage& image, int num_threads) {
   const View view = Prepare(image, num_threads);
-  FloatImage linear(camera_.width, camera_.height, 3);
-  ParallelFor(num_threads, camera_.height, [&](int64_t y) {
+  FloatImage linear(camera_.InWater().width, camera_.InWater().height, 3);
+  ParallelFor(num_threads, camera_.InWater().height, [&](int64_t y) {
     float* row = linear.Row(static_cast<int>(y));
-    for (int x = 0; x < camera_.width; ++x) {
+    for (int x = 0; x < camera_.InWater().width; ++x) {
       const Eigen::Array3f light = PixelLight(view, x, static_cast<int>(y));
       std::copy_n(light.data(), 3, row + 3 * x);
     }

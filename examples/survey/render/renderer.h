@@ -33,14 +33,14 @@ class Renderer {
   Eigen::Array3f PixelLight(const View& view, int x, int y) const;
   Eigen::Array3f ObjectColour(const Eigen::Vector2d& place) const;  // metres on the sheet
   Eigen::Array3f MeanAlbedo(const View& view, int x, int y, const SurfaceHit& hit) const;
-  Eigen::Vector2d GroundPlace(const View& view, const Eigen::Vector3d& cam_ray,
+  Eigen::Vector2d GroundPlace(const View& view, const WaterRay& cam_ray,
                               const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const;
   Eigen::Array2i SamplesOf(const View& view, int x, int y, const SurfaceHit& hit) const;
   Eigen::Array3f Illumination(const View& view, const SurfaceHit& hit) const;
   float OpenSky(const SurfaceHit& hit) const;
 
   const SurveyOptions options_;
-  const Camera camera_;
+  const PortCamera camera_;
   const Surface* surface_;
   AlbedoMap ground_colours_;
   std::unique_ptr<AlbedoMap> object_colours_;
