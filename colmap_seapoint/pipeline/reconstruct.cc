@@ -17,6 +17,7 @@
 #include "colmap_seapoint/pipeline/map.h"
 #include "colmap_seapoint/pipeline/match.h"
 #include "colmap_seapoint/pipeline/scale_models.h"
+#include "colmap_seapoint/pipeline/tie_pictures.h"
 #include "colmap_seapoint/pipeline/workspace_database.h"
 #include "colmap_seapoint/report/reconstruction_summary.h"
 #include "feature/match_features.h"
@@ -176,6 +177,15 @@ void ScaleModels(const Options& options, const Workspace& workspace,
   }
 }
 
+// What the second chance has not tied either gets a third one.
+void TieTheRest(const Options& options, const Workspace& workspace, const Stage& second_chance,
+                ColmapDatabase* database, WorkspaceState* state, RunReport* report) {
+  const auto found = ResultIfDone<SecondChance>(*state, second_chance);
+  if (!found || found->untied.empty()) return;
+  TiePictures(options, workspace, found->untied, StageFingerprint(second_chance) + found->pictures,
+              database, state, report);
+}
+
 CommandResult WriteReport(const Workspace& workspace, const std::vector<ModelSummary>& models,
                           const RunReport& report) {
   const std::string summary = SummaryText(models, report);
@@ -199,8 +209,9 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& opt
   const Stage begin = DatabaseStage(options, pictures.readable);
   ColmapDatabase database =
       OpenWorkspaceDatabase(workspace.database, pictures.readable, options.reader, begin, &state);
-  ExtractAndMatch(options, workspace, pictures, SecondChanceStage(options, begin), &database,
-                  &state, &report);
+  const Stage second_chance = SecondChanceStage(options, begin);
+  ExtractAndMatch(options, workspace, pictures, second_chance, &database, &state, &report);
+  TieTheRest(options, workspace, second_chance, &database, &state, &report);
   const Mapping mapping = MapPictures(plan, database, &state);
   report.stages.insert(report.stages.end(), mapping.seconds.begin(), mapping.seconds.end());
   std::vector<ModelSummary> models = ReadModels(mapping.models, &report);
