@@ -62,25 +62,37 @@ cv::Mat MatOf(const GrayImage& image) {
   return cv::Mat(image.height, image.width, CV_8U, const_cast<uint8_t*>(image.data.data()));
 }
 
-// Where each pixel of the view lies in the picture reduced by `scale`, in OpenCV's frame; far
-// outside where the camera sees nothing.
-cv::Mat MapOf(const GroundFrame& frame, const Camera& camera, double scale) {
+// How the picture is reduced before the view is drawn, so that fine texture does not become noise:
+// across by as much as the view is, along by less, for the view draws out what the tilt shortened.
+struct Reduction {
+  double x = 1, y = 1;
+};
+
+Reduction ReductionOf(const GroundFrame& frame, const Camera& camera) {
+  const double scale = frame.width / (2 * frame.half_width) / camera.MeanFocal();
+  return {std::min(1.0, scale), std::min(1.0, scale / frame.cosine)};
+}
+
+// Where each pixel of the view lies in the reduced picture, in OpenCV's frame; far outside where
+// the camera sees nothing.
+cv::Mat MapOf(const GroundFrame& frame, const Camera& camera, const Reduction& reduction) {
   cv::Mat map(frame.height, frame.width, CV_32FC2);
   for (int y = 0; y < frame.height; ++y) {
     for (int x = 0; x < frame.width; ++x) {
       const auto pixel = camera.ImgFromCam(frame.RayOf(x + 0.5, y + 0.5));
-      map.at<cv::Vec2f>(y, x) = pixel ? cv::Vec2f(static_cast<float>(pixel->x() * scale - 0.5),
-                                                  static_cast<float>(pixel->y() * scale - 0.5))
-                                      : cv::Vec2f(-1e6f, -1e6f);
+      map.at<cv::Vec2f>(y, x) = pixel
+                                    ? cv::Vec2f(static_cast<float>(pixel->x() * reduction.x - 0.5),
+                                                static_cast<float>(pixel->y() * reduction.y - 0.5))
+                                    : cv::Vec2f(-1e6f, -1e6f);
     }
   }
   return map;
 }
 
-GrayImage Drawn(const cv::Mat& source, const cv::Mat& map, int interpolation) {
+GrayImage Drawn(const cv::Mat& source, const cv::Mat& map, int interpolation, int border) {
   GrayImage view(map.cols, map.rows);
   cv::Mat target = MatOf(view);
-  cv::remap(source, target, map, cv::noArray(), interpolation, cv::BORDER_CONSTANT, 0);
+  cv::remap(source, target, map, cv::noArray(), interpolation, border, 0);
   return view;
 }
 
@@ -92,23 +104,23 @@ TiltedView ExtractTiltedView(const GrayImage& picture, const GrayImage& mask, co
   const GroundFrame frame = FrameOf(camera, tilt_deg);
   if (picture.Empty() || std::min(frame.width, frame.height) < kMinSide) return view;
   view.camera = CameraOf(frame);
-  // Reduced before it is drawn, so that fine texture does not become noise.
-  const double scale = std::min(1.0, frame.width / (2 * frame.half_width) / camera.MeanFocal());
+  const Reduction reduction = ReductionOf(frame, camera);
   cv::Mat reduced, all_seen;
-  cv::resize(MatOf(picture), reduced, {}, scale, scale, cv::INTER_AREA);
+  cv::resize(MatOf(picture), reduced, {}, reduction.x, reduction.y, cv::INTER_AREA);
   if (mask.Empty()) {
     all_seen = cv::Mat(reduced.size(), CV_8U, cv::Scalar(255));
   } else {
     cv::resize(MatOf(mask), all_seen, reduced.size(), 0, 0, cv::INTER_NEAREST);
   }
-  const cv::Mat map = MapOf(frame, camera, scale);
+  const cv::Mat map = MapOf(frame, camera, reduction);
   SeaPointExtractionOptions of_view = options;
   of_view.min_num_features *= 2;
   of_view.max_num_features *= 2;
   of_view.num_levels = kTiltedLevels;
-  view.features = ExtractFeatures(Drawn(reduced, map, cv::INTER_LINEAR),
-                                  Drawn(all_seen, map, cv::INTER_NEAREST), of_view)
-                      .features;
+  view.features =
+      ExtractFeatures(Drawn(reduced, map, cv::INTER_LINEAR, cv::BORDER_REPLICATE),
+                      Drawn(all_seen, map, cv::INTER_NEAREST, cv::BORDER_CONSTANT), of_view)
+          .features;
   for (const SeaPoint& point : view.features.points) {
     const auto pixel = camera.ImgFromCam(frame.RayOf(point.x, point.y));
     view.in_picture.push_back(pixel.value_or(Eigen::Vector2d::Zero()));

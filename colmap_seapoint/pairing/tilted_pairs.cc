@@ -18,7 +18,7 @@
 namespace colmap_seapoint {
 namespace {
 
-constexpr size_t kMinMatches = 60;
+constexpr size_t kMinMatches = 100;
 constexpr size_t kTied = 30;  // what COLMAP's mapper asks for to register a picture
 
 struct Picture {

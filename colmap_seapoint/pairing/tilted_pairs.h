@@ -35,7 +35,7 @@ struct TiltedPairsJob {
 };
 
 // Matches the views of the pairs that were tried and whose pictures are in different groups; where
-// two groups are tied so, by 60 verified matches at least, the pictures that tie them are also
+// two groups are tied so, by 100 verified matches at least, the pictures that tie them are also
 // matched with those of their own group, so that what ties them is triangulated. Only adds: the
 // SeaPoints that are matched so stand behind the pictures' own, and their matches behind the pairs'
 // own, which are verified again as a whole; a pair that would lose by that stays as it is. Returns
