@@ -146,28 +146,6 @@ TEST_F(JoinModelsTest, TheSamePlaceAsTheLookAlikesIsJoined) {
   EXPECT_TRUE(joined.model) << joined.outcome;
 }
 
-// The thing of one place is there twice in the other: two ways to join them, as good as each other.
-TEST_F(JoinModelsTest, TwoWaysToJoinAreNone) {
-  Survey survey = NeighbouringStrips();
-  std::map<uint32_t, std::vector<int>> looks = survey.b.looks;
-  const auto moved = StrewnGround(-1, 3, -1, 2, 600, 0, 5);
-  std::vector<GroundPoint> twice = moved;
-  for (GroundPoint& point : twice) {
-    // What lies right of 0.7 looks like what lies 0.5 to its left.
-    if (point.xyz.x() > 0.7) point.looks += 10000;
-  }
-  for (const GroundPoint& point : moved) {
-    if (point.xyz.x() > 0.2 && point.xyz.x() <= 0.7) {
-      twice.push_back({point.xyz + Eigen::Vector3d(0.5, 0, 0), point.looks});
-    }
-  }
-  survey.b = SeenBy({PictureAt(4, 0.1, 0.6), PictureAt(5, 0.4, 0.6), PictureAt(6, 1.3, 0.6),
-                     PictureAt(7, 1.6, 0.6)},
-                    twice);
-  const JoinedModel joined = Join(survey.a, survey.b);
-  EXPECT_FALSE(joined.model) << joined.outcome;
-}
-
 TEST_F(JoinModelsTest, AModelThatIsBentStaysApart) {
   Survey survey = NeighbouringStrips();
   // Features that are off by several pixels where the other model sees the place too: no lens and

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "colmap_seapoint/joining/link_evidence.h"
 #include "tests/joining/two_models.h"
 
 namespace colmap_seapoint {
@@ -50,6 +51,33 @@ TEST(LinkConsensusTest, FindsTheFrameAmongWrongLinks) {
   for (const Eigen::Vector3d& x : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 2, 3)}) {
     EXPECT_LT((found->b_from_a * x - truth * x).norm(), 1e-8);
   }
+}
+
+// Half of the links lead to the place itself, and half to one 0.2 units beside it that looks the
+// same.
+TEST(LinkConsensusTest, TwoWaysToJoinAreRivals) {
+  Overlap overlap = ExactOverlap();
+  const size_t num_links = overlap.links.size();
+  const PosedImage& image = overlap.b.model.images[0];
+  for (size_t i = num_links / 2; i < num_links; ++i) {
+    ModelLink& link = overlap.links[i];
+    SparsePoint& point = overlap.b.model.points3D.at(link.point_b);
+    const Eigen::Vector3d& place = overlap.a.model.points3D.at(link.point_a).xyz;
+    point.xyz = OtherFrame() * (place + Eigen::Vector3d(0.2, 0, 0));
+    const auto pixel = overlap.b.model.cameras.at(1).ImgFromCam(image.cam_from_world * point.xyz);
+    ASSERT_TRUE(pixel);
+    link.pixel_b = *pixel;
+  }
+  const auto found = FindLinkConsensus(overlap.a.model, overlap.b.model, overlap.links);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->inliers.size() + found->num_rival_links, num_links);
+  EXPECT_GT(found->num_rival_links, num_links / 3);
+  // As many points and pictures as one likes do not help then.
+  LinkEvidence evidence = {100, 5, 5, 20, 20};
+  EXPECT_NE(Doubt(evidence, *found), "");
+  EXPECT_EQ(Doubt(evidence, {found->b_from_a, found->inliers, 0}), "");
+  evidence.num_linked = 7;  // of 20 places that should be linked
+  EXPECT_NE(Doubt(evidence, {found->b_from_a, found->inliers, 0}), "");
 }
 
 TEST(LinkConsensusTest, LinksAlongALineDoNotTellTheTurn) {
