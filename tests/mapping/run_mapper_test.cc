@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/mapping/mapper_process.h"
 #include "tests/io/test_files.h"
