@@ -10,6 +10,7 @@
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/mapping/adjust_lens.h"
+#include "colmap_seapoint/mapping/join_rounds.h"
 #include "colmap_seapoint/mapping/mapper_process.h"
 #include "colmap_seapoint/mapping/trial_plans.h"
 
@@ -114,9 +115,23 @@ class MapperRounds {
                   "its output is in " +
                       (job_.log_folder / "mapper_1.log").string());
     }
+    JoinModelsOfRounds(job_, [this](const fs::path& folder) { Polish(folder); });
   }
 
  private:
+  // A joined model gets its lens and all of its points as a model of the mapper does.
+  void Polish(const fs::path& folder) const {
+    if (job_.lens == LensRule::kLeaveToMapper) return;
+    Trial trial;
+    trial.command = kMapper;
+    trial.triangulation_path = job_.database_path;
+    trial.options = job_.later_rounds;
+    trial.holds_distortion = true;
+    const LensAdjustment lens =
+        AdjustLens(colmap_, JobOf(trial, "lens_joined_" + folder.filename().string()), folder);
+    LogInfo("Lens of the joined model: " + lens.outcome);
+  }
+
   // What is tried first may be enough.
   bool RunRound(int round) {
     Trial trial;

@@ -52,8 +52,7 @@ std::map<uint32_t, std::string> PicturesWithSeaPoints(const ColmapDatabase& data
   return pictures;
 }
 
-std::set<uint32_t> FindUntied(const ColmapDatabase& database,
-                              const std::map<uint32_t, std::string>& pictures) {
+Groups GroupsOf(const ColmapDatabase& database, const std::map<uint32_t, std::string>& pictures) {
   Groups groups(pictures);
   for (const auto& [id1, id2] : ReadVerifiedPairs(database)) {
     if (pictures.count(id1) == 0 || pictures.count(id2) == 0) continue;
@@ -62,6 +61,12 @@ std::set<uint32_t> FindUntied(const ColmapDatabase& database,
       groups.Tie(id1, id2);
     }
   }
+  return groups;
+}
+
+std::set<uint32_t> FindUntied(const ColmapDatabase& database,
+                              const std::map<uint32_t, std::string>& pictures) {
+  const Groups groups = GroupsOf(database, pictures);
   const std::map<uint32_t, size_t> sizes = groups.Sizes();
   const auto largest = std::max_element(
       sizes.begin(), sizes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
@@ -86,6 +91,14 @@ std::set<std::string> FindSecondChancePictures(const ColmapDatabase& database) {
     if (untied.count(id2) > 0) chosen.insert(pictures.at(id1));
   }
   return chosen;
+}
+
+std::map<uint32_t, uint32_t> TiedGroups(const ColmapDatabase& database) {
+  const std::map<uint32_t, std::string> pictures = PicturesWithSeaPoints(database);
+  const Groups groups = GroupsOf(database, pictures);
+  std::map<uint32_t, uint32_t> group_of;
+  for (const auto& [id, name] : pictures) group_of[id] = groups.Of(id);
+  return group_of;
 }
 
 }  // namespace colmap_seapoint

@@ -4,6 +4,8 @@
 // it was matched with, get SI-SeaPoints (paper 4) beside their own.
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <set>
 #include <string>
 
@@ -18,5 +20,8 @@ namespace colmap_seapoint {
 // whatever came of it. Pictures without SeaPoints are passed over. Throws Error when the database
 // cannot be read.
 std::set<std::string> FindSecondChancePictures(const ColmapDatabase& database);
+
+// The group, named by the smallest id in it, of every picture with SeaPoints, by image_id.
+std::map<uint32_t, uint32_t> TiedGroups(const ColmapDatabase& database);
 
 }  // namespace colmap_seapoint

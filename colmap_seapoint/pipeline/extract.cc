@@ -14,6 +14,7 @@
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "colmap_seapoint/io/outputs/run_lock.h"
+#include "colmap_seapoint/pairing/tilted_pairs.h"
 #include "colmap_seapoint/pipeline/output_paths.h"
 #include "colmap_seapoint/system/memory_budget.h"
 #include "feature/extract_features.h"
@@ -61,7 +62,8 @@ class Extractor {
       const std::optional<PictureFile> mask = OpenMask(name);
       if (mask) mask_hash = mask->Hash();
       result.fingerprint = Fingerprint(result.input, mask_hash, is_second_chance);
-      result.is_unchanged = stored == result.fingerprint;
+      result.is_unchanged =
+          stored == result.fingerprint || stored == result.fingerprint + kTiltedMark;
       if (result.is_unchanged) return result;
       // Its SeaPoints take less than decoding it does.
       const MemoryShare share(2 * file.BytesToDecode());

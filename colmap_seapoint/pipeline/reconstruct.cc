@@ -1,6 +1,7 @@
 #include "colmap_seapoint/pipeline/reconstruct.h"
 
 #include <filesystem>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -11,9 +12,13 @@
 #include "colmap_seapoint/cameras/camera_identity.h"
 #include "colmap_seapoint/cameras/exif_focal_length.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/colmap/database_features.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/content_hash.h"
+#include "colmap_seapoint/io/image/image_file.h"
 #include "colmap_seapoint/mapping/second_chance.h"
+#include "colmap_seapoint/pairing/tilted_pairs.h"
 #include "colmap_seapoint/pipeline/densify_models.h"
 #include "colmap_seapoint/pipeline/extract.h"
 #include "colmap_seapoint/pipeline/map.h"
@@ -186,6 +191,78 @@ void ScaleModels(const Options& options, const Workspace& workspace,
   }
 }
 
+MaskedPicture ReadMasked(const fs::path& folder, const std::string& mask_folder,
+                         const std::string& name) {
+  MaskedPicture read = {ReadGrayImage(folder / name), {}};
+  const fs::path mask = fs::path(mask_folder) / (name + ".png");
+  std::error_code ignored;
+  if (!mask_folder.empty() && fs::exists(mask, ignored)) read.mask = ReadGrayImage(mask);
+  return read;
+}
+
+// An earlier run was interrupted between the rows and the record of them.
+bool IsTiedAlready(const ColmapDatabase& database, const std::set<uint32_t>& ids) {
+  for (const uint32_t id : ids) {
+    const auto fingerprint = FeaturesFingerprint(database, id);
+    if (fingerprint && fingerprint->find(kTiltedMark) != std::string::npos) return true;
+  }
+  return false;
+}
+
+// The groups that these pictures are in now; empty when it is one.
+std::map<uint32_t, uint32_t> GroupsOf(const ColmapDatabase& database,
+                                      const std::set<uint32_t>& ids) {
+  std::map<uint32_t, uint32_t> groups;
+  std::set<uint32_t> different;
+  for (const auto& [id, group] : TiedGroups(database)) {
+    if (ids.count(id) == 0) continue;
+    groups[id] = group;
+    different.insert(group);
+  }
+  if (different.size() < 2) groups.clear();
+  return groups;
+}
+
+int64_t TieAll(TiltedPairsJob job, const std::set<uint32_t>& ids, ColmapDatabase* database) {
+  int64_t num_tied = 0;
+  DatabaseTransaction transaction(database);
+  for (const double tilt_deg : kTiltsDeg) {
+    job.tilt_deg = tilt_deg;
+    job.groups = GroupsOf(*database, ids);
+    if (!job.groups.empty()) num_tied += TieByTiltedViews(job, database);
+  }
+  transaction.Commit();
+  return num_tied;
+}
+
+// What the second chance has not tied either gets a third one: views from above, a tilt after the
+// other, as long as its pictures hang together in more than one group.
+void TieTheRest(const Options& options, const Workspace& workspace, const Stage& second_chance,
+                ColmapDatabase* database, WorkspaceState* state, RunReport* report) {
+  const auto found = ResultIfDone<SecondChance>(*state, second_chance);
+  if (!found || found->untied.empty()) return;
+  const Stage stage = {"tilted_views", kTiltedPairsVersion,
+                       StageFingerprint(second_chance) + found->pictures, ""};
+  std::set<uint32_t> ids;
+  for (const DatabaseImage& image : ReadImages(*database)) {
+    if (found->untied.count(image.name) > 0) ids.insert(image.image_id);
+  }
+  RunStage<int64_t>(state, stage, [&]() -> StageOutput<int64_t> {
+    if (ids.empty() || IsTiedAlready(*database, ids)) return {0, {}};
+    StageTimer timer(report, stage.name);
+    TiltedPairsJob job;
+    job.read = [&](const std::string& name) {
+      return ReadMasked(workspace.images, options.reader.mask_path, name);
+    };
+    job.extraction = options.extraction;
+    job.matching = options.matching;
+    job.num_threads = options.run.num_threads;
+    const int64_t num_tied = TieAll(job, ids, database);
+    LogInfo(std::to_string(num_tied) + " pairs of pictures were tied by views from above");
+    return {num_tied, {}};
+  });
+}
+
 CommandResult WriteReport(const Workspace& workspace, const std::vector<ModelSummary>& models,
                           const RunReport& report) {
   const std::string summary = SummaryText(models, report);
@@ -210,8 +287,9 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& giv
   const Stage begin = DatabaseStage(options, pictures.readable);
   ColmapDatabase database =
       OpenWorkspaceDatabase(workspace.database, pictures.readable, options.reader, begin, &state);
-  ExtractAndMatch(options, workspace, pictures, SecondChanceStage(options, begin), &database,
-                  &state, &report);
+  const Stage second_chance = SecondChanceStage(options, begin);
+  ExtractAndMatch(options, workspace, pictures, second_chance, &database, &state, &report);
+  TieTheRest(options, workspace, second_chance, &database, &state, &report);
   const Mapping mapping = MapPictures(plan, database, &state);
   report.stages.insert(report.stages.end(), mapping.seconds.begin(), mapping.seconds.end());
   std::vector<ModelSummary> models = ReadModels(mapping.models, &report);

@@ -46,7 +46,7 @@ set(exported_targets
   seapoint_densify_sequence seapoint_densify_maps seapoint_densify
   seapoint_georeference seapoint_compare seapoint_tracks seapoint_adjustment seapoint_lens
   seapoint_reposing seapoint_remeasuring seapoint_mapping seapoint_cameras seapoint_pictures
-  seapoint_pairing
+  seapoint_joining seapoint_pairing
   seapoint_report seapoint_pipeline)
 foreach(target IN LISTS exported_targets)
   string(REPLACE seapoint_ "" name ${target})

@@ -30,6 +30,7 @@ class RunMapperTest : public testing::Test {
  protected:
   RunMapperTest() {
     fs::create_directories(dir_ / "logs");
+    ColmapDatabase(dir_ / "database.db", ColmapDatabase::Mode::kCreateIfMissing).Finish();
     job_.database_path = dir_ / "database.db";
     job_.image_path = dir_ / "images";
     job_.output_path = dir_ / "sparse";
