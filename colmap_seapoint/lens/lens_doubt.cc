@@ -42,7 +42,7 @@ LensDoubt DoubtOf(const BundleAdjustment& adjustment, const GroundFrame& frame,
 std::string Say(const LensDoubt& doubt) {
   char text[160];
   std::snprintf(text, sizeof(text),
-                "the ground's bend is known to %.1f GSD over 5 times its distance or the whole way",
+                "the ground may be bent by %.1f GSD over 5 times the camera's distance",
                 doubt.bend_gsd);
   if (doubt.bend_gsd <= kKnownGsd) return text;
   const std::string trade =

@@ -100,7 +100,7 @@ TEST(GroundBendTest, TheUncertaintyIsThatOfManySurveys) {
 
 TEST(LensDoubtTest, SaysWhatIsOpenAndWhatWouldTell) {
   EXPECT_EQ(Say({0.3, "the distortion"}),
-            "the ground's bend is known to 0.3 GSD over 5 times its distance or the whole way");
+            "the ground may be bent by 0.3 GSD over 5 times the camera's distance");
   const std::string open = Say({12.34, "the distortion"});
   EXPECT_NE(open.find("12.3 GSD"), std::string::npos);
   EXPECT_NE(open.find("trades places with the distortion"), std::string::npos);
