@@ -84,7 +84,7 @@ exec unshare --mount sh -c '
     mkdir -p "\$root\$dir" && mount --rbind "\$dir" "\$root\$dir" || exit 125
   done
   shift
-  exec chroot "\$root" env --chdir="\$PWD" colmap "\$@"' colmap "$output/$1" "\$@"
+  exec chroot "\$root" env --chdir="\$PWD" /usr/bin/colmap "\$@"' colmap "$output/$1" "\$@"
 WRAPPER
   chmod +x "$wrapper"
 }
@@ -98,33 +98,7 @@ number_of() {  # VERSION
   colmap_of "$1" help 2>&1 | sed -n 's/^COLMAP \([0-9.]*\).*/\1/p' | head -n 1
 }
 
-# "--Group.option value" under the first of the names that this version's command knows; nothing
-# where it knows none.
-option() {  # VERSION COMMAND VALUE NAME...
-  local version=$1 command=$2 value=$3 name help
-  help=$(colmap_of "$version" "$command" -h 2>&1)
-  for name in "${@:4}"; do
-    if grep -q -e "--$name " <<<"$help"; then
-      echo "--$name $value"
-      return
-    fi
-  done
-}
-
 # ---- The chain
-
-# CPU seconds of the stages of those names, in all their runs.
-stage_cpu() {  # RUN_JSON NAME...
-  awk -v names=" ${*:2} " '
-    /"name":/ { name = $2; gsub(/[",]/, "", name); found = index(names, " " name " ") > 0 }
-    /"cpu_seconds":/ && found { sub(",", "", $2); sum += $2; found = 0 }
-    END { printf "%.1f", sum }' "$1"
-}
-
-# What model_analyzer says of a model under that name; the same words in every version.
-analyzed() {  # ANALYSIS TEXT
-  sed -n "s/.*$2[^:]*: *\([0-9.]*\).*/\1/p" <<<"$1" | tail -n 1
-}
 
 # "registered,points,error_px" of each model, joined by " + ".
 describe_models() {  # VERSION SPARSE
@@ -144,10 +118,7 @@ score() {  # SET_FOLDER WORKSPACE
   [ -d "$1/truth" ] || { echo ",,"; return; }
   text=$("$bin/demo_survey" score --survey_path "$1" --input_path "$2/sparse/0" \
     --cloud_path "$2/dense/0/fused.ply")
-  awk '/centres, RMS/ { mm = $(NF - 1) }
-       /^points within 4 GSD/ { within = $(NF - 1) }
-       /^of it with a point within 4 GSD/ { covered = $(NF - 1) }
-       END { print mm "," within "," covered }' <<<"$text"
+  echo "$(score_figure "$text" "camera centres, RMS"),$(score_figure "$text" "points within 4 GSD"),$(score_figure "$text" "of it with a point within 4 GSD")"
 }
 
 run_chain() {  # VERSION SET_FOLDER QUALITY
@@ -221,12 +192,12 @@ make_sift_project() {  # VERSION
   local folder=$output/work/$1/sift gpu
   rm -rf "$folder"
   mkdir -p "$folder/sparse" "$folder/text"
-  gpu=$(option "$1" feature_extractor 0 SiftExtraction.use_gpu FeatureExtraction.use_gpu)
+  gpu=$(colmap_option "$output/bin/$1/colmap" feature_extractor 0 SiftExtraction.use_gpu FeatureExtraction.use_gpu)
   # shellcheck disable=SC2086 # two words
   must_end 0 "SIFT project" "$1" "$output/bin/$1/colmap" feature_extractor \
     --database_path "$folder/database.db" --image_path "$small/images" \
     --ImageReader.single_camera 1 --SiftExtraction.max_num_features 1500 $gpu || return 1
-  gpu=$(option "$1" exhaustive_matcher 0 SiftMatching.use_gpu FeatureMatching.use_gpu)
+  gpu=$(colmap_option "$output/bin/$1/colmap" exhaustive_matcher 0 SiftMatching.use_gpu FeatureMatching.use_gpu)
   # shellcheck disable=SC2086
   must_end 0 "SIFT project" "$1" "$output/bin/$1/colmap" exhaustive_matcher \
     --database_path "$folder/database.db" $gpu || return 1
@@ -312,7 +283,7 @@ read_models() {  # VERSION
     holds "its $form model scaled" "$1" "read again: $(analyzed "$(cat "$log")" 'Registered images') pictures, error $(analyzed "$(cat "$log")" 'Mean reprojection error')"
   done
   must_end 0 "our depth maps fused by it" "$1" "$output/bin/$1/colmap" stereo_fusion \
-    --workspace_path "$folder/binary" --input_type photometric \
+    --workspace_path "$folder/binary" --StereoFusion.min_num_pixels 2 \
     --output_path "$folder/fused_by_colmap.ply" || return 0
   holds "our depth maps fused by it" "$1" "$(num_points "$folder/fused_by_colmap.ply") points"
 }

@@ -13,6 +13,7 @@
 #include "tests/cli/cli_runner.h"
 #include "tests/cli/database_tables.h"
 #include "tests/cli/synthetic_strip.h"
+#include "tests/colmap_options.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -68,8 +69,8 @@ class ColmapDatabases : public testing::TestWithParam<const char*> {
     };
     run({"database_creator"});
     run({"feature_extractor", "--image_path", (folder_ / "theirs").string(),
-         "--SiftExtraction.use_gpu", "0", "--SiftExtraction.max_num_features", "500"});
-    run({"exhaustive_matcher", "--SiftMatching.use_gpu", "0"});
+         GpuOption("feature_extractor"), "0", "--SiftExtraction.max_num_features", "500"});
+    run({"exhaustive_matcher", GpuOption("exhaustive_matcher"), "0"});
     ASSERT_EQ(Count("two_view_geometries"), 3);
   }
 
@@ -211,8 +212,8 @@ TEST_F(InstalledColmap, SiftOfTheSamePicturesIsLeftAlone) {
 TEST_F(InstalledColmap, ItsMatchersAndCleanerBeforeOurs) {
   ASSERT_EQ(Extract("ours").exit_code, 0);
   const Tables extracted = ReadTables(Database());
-  const CliResult theirs =
-      Colmap({"exhaustive_matcher", "--database_path", Database(), "--SiftMatching.use_gpu", "0"});
+  const CliResult theirs = Colmap(
+      {"exhaustive_matcher", "--database_path", Database(), GpuOption("exhaustive_matcher"), "0"});
   ASSERT_EQ(theirs.exit_code, 0) << theirs.Text();
   ASSERT_EQ(Count("two_view_geometries WHERE rows = 0"), kNumOurs * (kNumOurs - 1) / 2);
   ASSERT_EQ(Match("exhaustive_matcher").exit_code, 0);
@@ -254,9 +255,9 @@ TEST_F(InstalledColmap, ItsToolsRunOnOurDatabase) {
   ASSERT_TRUE(IsSparseModel(sparse + "/0"));
   EXPECT_EQ(ReadSparseModel(sparse + "/0").images.size(), 5u);
   expect_success(
-      {"exhaustive_matcher", "--database_path", Database(), "--SiftMatching.use_gpu", "0"});
+      {"exhaustive_matcher", "--database_path", Database(), GpuOption("exhaustive_matcher"), "0"});
   expect_success({"feature_extractor", "--database_path", Database(), "--image_path", images,
-                  "--SiftExtraction.use_gpu", "0"});
+                  GpuOption("feature_extractor"), "0"});
   EXPECT_EQ(ReadTables(Database()), ours);
   expect_success({"point_triangulator", "--database_path", Database(), "--image_path", images,
                   "--input_path", sparse + "/0", "--output_path", again});
