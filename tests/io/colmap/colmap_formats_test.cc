@@ -147,6 +147,27 @@ TEST(ColmapFormats, FramesAreAllOrNothing) {
             (std::vector<std::string>{"8|1|1|0", "9|2|1|0", "10|3|1|0", "11|4|2|0", "12|5|2|0"}));
 }
 
+// What COLMAP's matchers leave for pictures whose descriptors are stubs: 3.8 and 3.10 with config
+// 0, 4.2.1 with config 1, which our own rows of pairs without inliers have too.
+TEST(ColmapFormats, RowsOfColmapsMatchersAreNoMatchesOfOurs) {
+  for (const char* config : {"0", "1"}) {
+    const TempDir dir;
+    MakeDatabaseWithFrames(dir / "a.db");
+    ColmapDatabase db(dir / "a.db", Mode::kReadWrite);
+    AddImage(&db, "b.jpg", 1);
+    Execute(dir / "a.db",
+            "INSERT INTO matches VALUES(2147483649, 0, 2, NULL);"
+            "INSERT INTO two_view_geometries(pair_id, rows, cols, data, config) "
+            "VALUES(2147483649, 0, 2, NULL, " +
+                std::string(config) + ")");
+    EXPECT_FALSE(HasMatches(db, {1, 2})) << config;
+    TwoViewGeometry none;
+    none.config = TwoViewConfig::kDegenerate;
+    WriteMatches(&db, 1, 2, {}, none);
+    EXPECT_TRUE(HasMatches(db, {1, 2})) << config;
+  }
+}
+
 // The table as COLMAP 3.10 and 4.2.1 made it: neither opens a database with the other's.
 constexpr char kPosePriorsOf310[] =
     "CREATE TABLE pose_priors   (image_id          INTEGER  PRIMARY KEY  NOT NULL,    position"
