@@ -10,9 +10,10 @@
 #   --pictures DIR   pictures of yours for the chain, beside the demo survey; may be repeated
 #   WORK_DIR         chroots, workspaces, chain.csv and versions.md [build/colmap_versions]
 # Runs the chain (automatic_reconstructor, field and survey) on the demo survey and on your pictures
-# with each COLMAP; and, on a small survey, has each open the databases and the models of the others
-# and ours, and ours open theirs. Rows that are in chain.csv already are kept. Ends with 1 when
-# something did not hold. Needs root, for chroot. Half an hour on two cores, half of it downloads.
+# with each COLMAP; on a small survey has each open our database and ours open its database and
+# models; maps one workspace with one COLMAP after the other; and runs the suite's own tests of
+# COLMAP's tools with each. Rows that are in chain.csv already are kept. Ends with 1 when something
+# did not hold. Needs root, for chroot. Half an hour on two cores, half of it downloads.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/benchmark_common.sh"
 
@@ -40,7 +41,7 @@ done
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 make_output build/colmap_versions
 install_packages time debootstrap
-build demo_survey colmap_seapoint
+build demo_survey colmap_seapoint io_test e2e_test
 binary=${binary:-$bin/colmap_seapoint}
 export QT_QPA_PLATFORM=offscreen
 versions=(host trixie sid)
@@ -102,7 +103,7 @@ number_of() {  # VERSION
 
 # "registered,points,error_px" of each model, joined by " + ".
 describe_models() {  # VERSION SPARSE
-  local model analysis registered= points= error=
+  local model analysis registered='' points='' error=''
   for model in "$2"/*/; do
     analysis=$(colmap_of "$1" model_analyzer --path "$model" 2>&1) || return 1
     registered+=" + $(analyzed "$analysis" 'Registered images')"
@@ -288,6 +289,16 @@ read_models() {  # VERSION
   holds "our depth maps fused by it" "$1" "$(num_points "$folder/fused_by_colmap.ply") points"
 }
 
+# The suite's tests that call "colmap", with this one on PATH.
+run_suite() {  # VERSION
+  local check="tests of its tools" test
+  for test in 'io_test ColmapBinary.*' 'e2e_test InstalledColmap.*'; do
+    must_end 0 "$check" "$1" env PATH="$output/bin/$1:$PATH" "$bin/${test% *}" \
+      --gtest_filter="${test#* }" || continue
+    holds "$check" "$1" "${test% *}: $(sed -n 's/^\[  PASSED  \] //p' "$log")"
+  done
+}
+
 # A workspace that one version has mapped is mapped anew by another, and by the first again.
 change_colmap() {
   local folder=$output/work/changed version
@@ -353,6 +364,7 @@ for version in "${versions[@]}"; do
   extend_database "$version"
   open_ours "$version"
   read_models "$version"
+  run_suite "$version"
 done
 change_colmap
 for version in "${versions[@]}"; do
