@@ -91,3 +91,34 @@ machine_name() {
   printf '%s; %s cores; %s GB' "${model:-$(uname -m)}" "$(nproc)" \
     "$(awk '/^MemTotal/ { printf "%.0f", $2 / 1048576 }' /proc/meminfo)"
 }
+
+# CPU seconds of the stages of those names, in all their runs.
+stage_cpu() {  # RUN_JSON NAME...
+  awk -v names=" ${*:2} " '
+    /"name":/ { name = $2; gsub(/[",]/, "", name); found = index(names, " " name " ") > 0 }
+    /"cpu_seconds":/ && found { sub(",", "", $2); sum += $2; found = 0 }
+    END { printf "%.1f", sum }' "$1"
+}
+
+# "--Group.option value" under the first of the names that this COLMAP's command knows; nothing
+# where it knows none: names change between versions.
+colmap_option() {  # COLMAP COMMAND VALUE NAME...
+  local help name
+  help=$("$1" "$2" -h 2>&1)
+  for name in "${@:4}"; do
+    if grep -q -e "--$name " <<<"$help"; then
+      echo "--$name $3"
+      return
+    fi
+  done
+}
+
+# What a model_analyzer's output says under that name; the words are the same in every version.
+analyzed() {  # OUTPUT TEXT
+  sed -n "s/.*$2[^:]*: *\([0-9.]*\).*/\1/p" <<<"$1" | tail -n 1
+}
+
+# The figure of demo_survey score in the line that begins so, without its unit.
+score_figure() {  # OUTPUT TEXT
+  awk -v text="$2" 'index($0, text) == 1 { print $(NF - 1); exit }' <<<"$1"
+}

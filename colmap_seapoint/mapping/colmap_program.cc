@@ -4,6 +4,7 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/files/subprocess.h"
+#include "colmap_seapoint/mapping/colmap_log.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -12,6 +13,9 @@ struct MapperDefault {
   const char* name;
   const char* value;
 };
+
+// COLMAP 4.x also writes all that it says to a file in /tmp, which nobody removes.
+constexpr MapperDefault kLogTarget = {"log_target", "stderr"};
 
 constexpr MapperDefault kEveryRound[] = {
     // With several threads the bundle adjustment adds in another order each time: two runs on the
@@ -70,7 +74,8 @@ ColmapProgram FindColmap(const std::string& colmap, double timeout_seconds) {
   program.timeout_seconds = timeout_seconds;
   program.path = FindProgram(colmap, kInstallRemedy);
   const auto read_line = [&](const std::string& line) {
-    if (program.version.empty() && line.compare(0, 6, "COLMAP") == 0) program.version = line;
+    const std::string message = MessageOf(line);
+    if (program.version.empty() && message.compare(0, 6, "COLMAP") == 0) program.version = message;
     const std::string name = OptionNameInHelp(line);
     if (!name.empty()) program.mapper_options.push_back(name);
   };
@@ -100,6 +105,7 @@ MapperOptions OptionsOfRound(const ColmapProgram& colmap, Round round, const std
   const auto add = [&](const std::string& name, const std::string& value) {
     if (colmap.HasMapperOption(name)) options[name] = value;
   };
+  add(kLogTarget.name, kLogTarget.value);
   add("random_seed", std::to_string(random_seed));
   add("Mapper.random_seed", std::to_string(random_seed));  // later versions; -1 = from the clock
   for (const MapperDefault& option : kEveryRound) add(option.name, option.value);
@@ -127,6 +133,7 @@ std::optional<MapperOptions> OptionsOfGlobalMapper(const ColmapProgram& colmap, 
   const auto add = [&](const std::string& name, const std::string& value) {
     if (colmap.HasMapperOption(name)) options[name] = value;
   };
+  add(kLogTarget.name, kLogTarget.value);
   add("GlobalMapper.num_threads", "1");
   add("GlobalMapper.random_seed", std::to_string(random_seed));
   return options;

@@ -11,14 +11,12 @@
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/subprocess.h"
+#include "colmap_seapoint/mapping/colmap_log.h"
 
 namespace colmap_seapoint {
 namespace {
 
 namespace fs = std::filesystem;
-
-// What COLMAP says, from 3.8 on, when it ends with 1 because it found none.
-constexpr char kNoModel[] = "failed to create sparse model";
 
 // How many pictures the present model has, from a line as "Registering image #3 (4)" (COLMAP 3.8)
 // or "Registering frame #3 (num_reg_frames=4)" (later versions); nullopt for other lines.
@@ -32,7 +30,14 @@ std::optional<int> NumRegistered(const std::string& line) {
   return std::atoi(line.c_str() + digits);
 }
 
-std::vector<std::string> Arguments(const MapperCall& call) {
+// The option that limits the pictures: the mapper's own from 4.2 on.
+std::string ListOption(const ColmapProgram& colmap, const std::string& command) {
+  const std::string common = "image_list_path";
+  const std::string own = (command == kGlobalMapper ? "GlobalMapper." : "Mapper.") + common;
+  return colmap.HasMapperOption(own) ? own : common;
+}
+
+std::vector<std::string> Arguments(const ColmapProgram& colmap, const MapperCall& call) {
   std::vector<std::string> arguments = {call.command,
                                         "--database_path",
                                         call.database_path.string(),
@@ -45,7 +50,7 @@ std::vector<std::string> Arguments(const MapperCall& call) {
     std::string names;
     for (const std::string& name : call.pictures) names += name + "\n";
     WriteTextFile(list, names);
-    arguments.insert(arguments.end(), {"--image_list_path", list.string()});
+    arguments.insert(arguments.end(), {"--" + ListOption(colmap, call.command), list.string()});
   }
   AppendOptions(call.options, &arguments);
   return arguments;
@@ -56,21 +61,21 @@ std::vector<std::string> Arguments(const MapperCall& call) {
 MapperEnd RunMapperProcess(const ColmapProgram& colmap, const MapperCall& call) {
   Progress progress("Pictures registered by colmap mapper",
                     static_cast<int64_t>(call.num_pictures));
-  std::string last_line;
+  std::string last_message;
   bool says_no_model = false;
   const auto read_line = [&](const std::string& line) {
-    if (!line.empty()) last_line = line;
-    says_no_model = says_no_model || line.find(kNoModel) != std::string::npos;
-    if (const auto count = NumRegistered(line)) progress.Update(*count);
+    const std::string message = MessageOf(line);
+    if (!message.empty()) last_message = message;
+    says_no_model = says_no_model || SaysThatThereIsNoModel(message);
+    if (const auto count = NumRegistered(message)) progress.Update(*count);
   };
-  const SubprocessResult result =
-      RunSubprocess(colmap.path, Arguments(call), call.log_path, read_line, colmap.timeout_seconds);
-  if (last_line.find("parse options") != std::string::npos ||
-      last_line.find("Invalid options") != std::string::npos) {
-    throw UsageError("--Mapper: " + colmap.path.string() + " refuses a value: " + last_line);
+  const SubprocessResult result = RunSubprocess(colmap.path, Arguments(colmap, call), call.log_path,
+                                                read_line, colmap.timeout_seconds);
+  if (SaysThatAnOptionIsRefused(last_message)) {
+    throw UsageError("--Mapper: " + colmap.path.string() + " refuses a value: " + last_message);
   }
   MapperEnd end;
-  end.text = result.Text() + ", '" + last_line + "'";
+  end.text = result.Text() + ", '" + last_message + "'";
   const bool found_none =
       ListModels(call.output_path).empty() && (says_no_model || !call.must_succeed);
   end.is_usable = result.signal_number == 0 && (result.exit_code == 0 || found_none);

@@ -23,7 +23,7 @@ struct MapperCall {
 
 struct MapperEnd {
   bool is_usable = false;  // what it left, which may be nothing
-  std::string text;        // how it ended, and its last line
+  std::string text;        // how it ended, and its last message
 };
 
 // Runs it. That it finds no model is no failure, though COLMAP exits with 1 for it and says so.

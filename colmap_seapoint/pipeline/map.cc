@@ -8,6 +8,7 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/colmap/database_copy.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/io/files/run_report_json.h"
@@ -109,6 +110,26 @@ void PutModelsInPlace(const fs::path& from, const fs::path& sparse, OutputFolder
   fs::remove_all(from, ignored);
 }
 
+// The database as every COLMAP opens it: the workspace's own, or, where a COLMAP has made its table
+// of pose priors in that, a copy without it, which is gone at the end.
+class DatabaseForMapper {
+ public:
+  DatabaseForMapper(const ColmapDatabase& database, const fs::path& own, const fs::path& copy)
+      : path_(own), copy_(copy) {
+    if (!HasPosePriorTable(database)) return;
+    CopyDatabase(database, copy);
+    path_ = copy;
+  }
+  ~DatabaseForMapper() { RemoveDatabase(copy_); }
+  DatabaseForMapper(const DatabaseForMapper&) = delete;
+  DatabaseForMapper& operator=(const DatabaseForMapper&) = delete;
+
+  const fs::path& Path() const { return path_; }
+
+ private:
+  fs::path path_, copy_;
+};
+
 }  // namespace
 
 MappingPlan PlanMapping(const AutomaticReconstructorOptions& options, const Workspace& workspace) {
@@ -154,6 +175,9 @@ Mapping MapPictures(MappingPlan plan, const ColmapDatabase& database, WorkspaceS
     RunReport report;
     {
       StageTimer timer(&report, "mapper");
+      const DatabaseForMapper mapped(database, plan.job.database_path,
+                                     plan.sparse.string() + ".tmp.db");
+      plan.job.database_path = mapped.Path();
       RunMapper(plan.colmap, plan.job);
     }
     PutModelsInPlace(plan.job.output_path, plan.sparse, state->Folder());

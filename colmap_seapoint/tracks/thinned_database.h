@@ -19,9 +19,10 @@ struct Thinning {
   int64_t num_chosen_matches = 0;  // of the copy
 };
 
-// Writes `copy`, replacing what is there: all of the database (so that pictures and keypoints have
-// the same numbers), but of each pair's verified matches only those between observations of chosen
-// tracks. Throws Error. Memory: about 40 bytes a keypoint. About 1 microsecond a match.
+// Writes `copy`, replacing what is there: all of the database that CopyDatabase takes (so that
+// pictures and keypoints have the same numbers), but of each pair's verified matches only those
+// between observations of chosen tracks. Throws Error. Memory: about 40 bytes a keypoint. About 1
+// microsecond a match.
 Thinning WriteThinnedDatabase(const ColmapDatabase& database, const ThinningOptions& options,
                               const std::filesystem::path& copy);
 

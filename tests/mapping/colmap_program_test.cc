@@ -58,6 +58,25 @@ TEST_F(ColmapProgramTest, AsksForVersionAndOptions) {
   EXPECT_FALSE(colmap.HasMapperOption("Mapper.random_seed"));
 }
 
+// What differs between two versions must differ here, and what does not, the time of the answer,
+// must not: by this a mapping is known to be another one's.
+TEST_F(ColmapProgramTest, TheVersionIsReadFromALogLineToo) {
+  colmap_.SetHelp(
+      MapperHelp("I20261129 07:26:52.421883 17465 option_manager.cc:1319] COLMAP 4.2.1 (Commit z)",
+                 kOptionsOf4));
+  EXPECT_EQ(colmap_.Program().version, "COLMAP 4.2.1 (Commit z)");
+}
+
+TEST_F(ColmapProgramTest, ItsLogGoesToUsAndNotToAFileOfItsOwn) {
+  std::vector<std::string> options = kOptionsOf4;
+  options.emplace_back("log_target");
+  colmap_.SetHelp(MapperHelp("COLMAP 4.2.1 (Commit z)", options),
+                  "Available commands:\n  global_mapper\n  mapper\n");
+  const ColmapProgram colmap = colmap_.Program();
+  EXPECT_EQ(OptionsOfRound(colmap, Round::kLater, "field", 5, {}).at("log_target"), "stderr");
+  EXPECT_EQ(OptionsOfGlobalMapper(colmap, 5)->at("log_target"), "stderr");
+}
+
 TEST_F(ColmapProgramTest, KnowsTheOptionsOfTheGlobalMapperWhereThereIsOne) {
   SetVersion4();
   const ColmapProgram colmap = colmap_.Program();

@@ -225,6 +225,51 @@ TEST_F(RunMapperTest, ARefusedValueIsAFaultOfTheCommandLine) {
   EXPECT_THROW(Run(), UsageError);
 }
 
+// The last lines of COLMAP 4.2.1, in colours, where it refuses a value, finds no model, and aborts.
+constexpr char kRefusalOf4[] =
+    "\033[0;31mE20261129 07:30:58.297910  3310 base_option_manager.cc:265] Failed to parse options "
+    "- "
+    "the argument ('x') for option '--Mapper.min_model_size' is invalid.\n\033[m";
+constexpr char kNoModelOf4[] =
+    "I20261129 07:34:07.646431 22084 timer.cc:90] Elapsed time: 0.001 [minutes]\n"
+    "\033[0;31mE20261129 07:34:07.646452 22084 sfm.cc:310] Failed to create any sparse "
+    "model\n\033[m";
+constexpr char kAbortOf4[] =
+    "  what():  No registered database factory succeeded.\n"
+    "*** Aborted at 1795937483 (unix time) try \"date -d @1795937483\" if you are using GNU date "
+    "***\n"
+    "PC: @                0x0 (unknown)\n"
+    "    @     0x55ff087e9bd1 (unknown)";
+
+TEST_F(RunMapperTest, EndingsOfColmap4AreUnderstood) {
+  colmap_.Ends(kMapper, 1, kRefusalOf4, 1);
+  EXPECT_THROW(Run(), UsageError);
+  for (const int call : {2, 3}) colmap_.Ends(kMapper, call, kNoModelOf4, 1);  // both rounds
+  const std::string none = ErrorOf([&] { Run(); });
+  EXPECT_NE(
+      none.find("the mapper found no model (exit code 1, 'Failed to create any sparse model')"),
+      std::string::npos)
+      << none;
+  colmap_.Ends(kMapper, 4, kAbortOf4, 134);
+  const std::string aborted = ErrorOf([&] { Run(); });
+  EXPECT_NE(aborted.find("'what():  No registered database factory succeeded.'"), std::string::npos)
+      << aborted;
+}
+
+// In 4.2 the list of pictures is an option of each mapper's own, and the common one is refused.
+TEST_F(RunMapperTest, PicturesAreListedUnderTheNameThatThisVersionKnows) {
+  std::string help = MapperHelp("COLMAP 4.2.1 (scripted)", {"Mapper.num_threads"});
+  help.replace(help.find("--image_list_path"), 17, "--Mapper.image_list_path");
+  colmap_.SetHelp(help);
+  colmap_.Leaves(kMapper, 1, "0", Part(1, 6));
+  colmap_.Leaves(kMapper, 2, "0", Part(7, 10));
+  Run();
+  EXPECT_EQ(NumModels(), 2u);
+  EXPECT_EQ(colmap_.Value(kMapper, 2, "image_list_path"), "");
+  EXPECT_NE(colmap_.Value(kMapper, 2, "Mapper.image_list_path"), "");
+  EXPECT_EQ(colmap_.ImageList(kMapper, 2), "img10.jpg\nimg7.jpg\nimg8.jpg\nimg9.jpg\n");
+}
+
 TEST_F(RunMapperTest, TheDistortionIsHeldAndThenFreedWherePicturesAreLeftOver) {
   job_.lens = LensRule::kFind;
   colmap_.Leaves(kMapper, 1, "0", Part(1, 6));

@@ -23,7 +23,7 @@ while [ $# -gt 1 ]; do
   case $1 in
     --input_path) input=$2 ;;
     --output_path) output=$2 ;;
-    --image_list_path) cp "$2" "$dir/$command.$call.list" ;;
+    --image_list_path | --*Mapper.image_list_path) cp "$2" "$dir/$command.$call.list" ;;
   esac
   shift
 done

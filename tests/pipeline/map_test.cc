@@ -205,6 +205,35 @@ TEST_F(MapPicturesTest, LeavesModelsOfAllMatchedPictures) {
   EXPECT_TRUE(fs::exists(Space().report / "mapper_1_thinned.log"));
 }
 
+// A COLMAP that aborts on a table of pose priors, as 3.10 does on that of 4.2.1 and 4.2.1 on that
+// of 3.10.
+constexpr char kColmapWithoutPriors[] = R"sh(#!/bin/sh
+for argument in "$@"; do
+  if [ "$last" = --database_path ] && sqlite3 "$argument" .tables | grep -q pose_priors; then
+    echo "SQLite error: SQL logic error"
+    exit 134
+  fi
+  last=$argument
+done
+)sh";
+
+TEST_F(MapPicturesTest, AnotherVersionsPosePriorsAreNotShownToTheMapper) {
+  ExecuteSql(Space().database.string(),
+             "CREATE TABLE pose_priors(image_id INTEGER PRIMARY KEY NOT NULL, position BLOB, "
+             "coordinate_system INTEGER NOT NULL); INSERT INTO pose_priors VALUES(1, NULL, 1)");
+  const fs::path colmap = folder_ / "colmap_without_priors";
+  WriteBytes(colmap, kColmapWithoutPriors + std::string("exec '") + FAKE_COLMAP + "' \"$@\"\n");
+  fs::permissions(colmap, fs::perms::owner_all);
+  Options options = ReconstructorOptions();
+  options.colmap_path = colmap.string();
+  options.quality = "archive";  // maps all matches, without a thinned copy
+  WorkspaceState state(Space().root);
+  Map(options, &state);
+  EXPECT_EQ(ReadSparseModel(Space().sparse / "0").images.size(), static_cast<size_t>(kNumPictures));
+  EXPECT_EQ(QueryRows(Space().database.string(), "SELECT count(*) FROM pose_priors").front(), "1");
+  EXPECT_FALSE(fs::exists(Space().sparse.string() + ".tmp.db"));
+}
+
 TEST_F(MapPicturesTest, MapsOnce) {
   WorkspaceState state(Space().root);
   const Mapping first = Map(ReconstructorOptions(), &state);

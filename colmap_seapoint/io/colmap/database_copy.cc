@@ -31,10 +31,7 @@ struct Target {
 }  // namespace
 
 void CopyDatabase(const ColmapDatabase& database, const std::filesystem::path& copy) {
-  std::error_code ignored;  // what is in the way fails below
-  for (const char* suffix : {"", "-wal", "-shm", "-journal"}) {
-    std::filesystem::remove(copy.string() + suffix, ignored);
-  }
+  RemoveDatabase(copy);  // what is still in the way fails below
   Target target(copy.string());
   target.Open();
   sqlite3* to = target.connection.handle;
@@ -42,6 +39,18 @@ void CopyDatabase(const ColmapDatabase& database, const std::filesystem::path& c
   if (backup == nullptr) target.Check(sqlite3_errcode(to));
   sqlite3_backup_step(backup, kAllPages);
   target.Check(sqlite3_backup_finish(backup));
+  RunSql(target.connection, "DROP TABLE IF EXISTS pose_priors");
+}
+
+bool HasPosePriorTable(const ColmapDatabase& database) {
+  return HasColumn(database.Connection(), "pose_priors", "position");
+}
+
+void RemoveDatabase(const std::filesystem::path& path) {
+  std::error_code ignored;
+  for (const char* suffix : {"", "-wal", "-shm", "-journal"}) {
+    std::filesystem::remove(path.string() + suffix, ignored);
+  }
 }
 
 }  // namespace colmap_seapoint

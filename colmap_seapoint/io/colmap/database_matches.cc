@@ -178,7 +178,7 @@ std::vector<ImagePair> ReadPairs(const ColmapDatabase& database, const std::stri
 bool HasMatches(const ColmapDatabase& database, ImagePair pair) {
   return HasRow(
       database.Connection(),
-      "SELECT 1 FROM two_view_geometries WHERE pair_id = ? AND (rows <> 0 OR config <> 0)",
+      "SELECT 1 FROM two_view_geometries WHERE pair_id = ? AND (rows <> 0 OR data IS NOT NULL)",
       PairId(pair));
 }
 

@@ -13,8 +13,9 @@ namespace colmap_seapoint {
 // A pair of image ids, smaller first.
 using ImagePair = std::pair<uint32_t, uint32_t>;
 
-// Whether `two_view_geometries` has a row for the pair. The empty row of an undefined geometry does
-// not count: COLMAP's own matchers write it for pictures that have stubs, and ours never do.
+// Whether `two_view_geometries` has a row for the pair. The row without inliers whose
+// data are NULL does not count: COLMAP's own matchers write it for pictures that have stubs (as of
+// an undefined geometry in 3.8 and 3.10, of a degenerate one in 4.2.1), and ours write empty data.
 bool HasMatches(const ColmapDatabase& database, ImagePair pair);
 
 // Both tables, in pair_id order: when id1 > id2 the match columns, F, E, H and the pose are

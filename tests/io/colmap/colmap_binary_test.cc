@@ -8,6 +8,7 @@
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/io/image/image_file.h"
+#include "tests/colmap_options.h"
 #include "tests/io/test_database.h"
 namespace colmap_seapoint {
 namespace {
@@ -51,10 +52,11 @@ TEST_F(ColmapBinary, OurDatabaseSurvivesItsTools) {
     return Query(dir_ / "a.db", "SELECT * FROM keypoints, two_view_geometries, matches");
   };
   const auto before = rows();
-  EXPECT_EQ(RunColmap("feature_extractor --SiftExtraction.use_gpu 0 --image_path " +
+  EXPECT_EQ(RunColmap("feature_extractor " + GpuOption("feature_extractor") + " 0 --image_path " +
                       (dir_ / "images").string() + Arguments()),
             0);
-  EXPECT_EQ(RunColmap("exhaustive_matcher --SiftMatching.use_gpu 0" + Arguments()), 0);
+  EXPECT_EQ(RunColmap("exhaustive_matcher " + GpuOption("exhaustive_matcher") + " 0" + Arguments()),
+            0);
   EXPECT_EQ(rows(), before);
   {
     const ColmapDatabase db(dir_ / "a.db", Mode::kReadWrite);
@@ -82,10 +84,11 @@ TEST_F(ColmapBinary, ItMatchesOurSift) {
       WriteFeatures(&db, AddImage(&db, name, camera_id), features, "p");
     }
   }
-  EXPECT_EQ(RunColmap("feature_extractor --SiftExtraction.use_gpu 0 --image_path " +
+  EXPECT_EQ(RunColmap("feature_extractor " + GpuOption("feature_extractor") + " 0 --image_path " +
                       (dir_ / "images").string() + Arguments()),
             0);
-  EXPECT_EQ(RunColmap("exhaustive_matcher --SiftMatching.use_gpu 0" + Arguments()), 0);
+  EXPECT_EQ(RunColmap("exhaustive_matcher " + GpuOption("exhaustive_matcher") + " 0" + Arguments()),
+            0);
   {
     const ColmapDatabase db(dir_ / "a.db", Mode::kReadWrite);
     ExpectSameFeatures(ReadFeatures(db, 1), features);

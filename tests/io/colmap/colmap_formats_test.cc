@@ -5,6 +5,7 @@
 #include <map>
 
 #include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_copy.h"
 #include "colmap_seapoint/io/colmap/database_features.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/colmap/database_matches.h"
@@ -144,6 +145,68 @@ TEST(ColmapFormats, FramesAreAllOrNothing) {
             (std::vector<std::string>{"8|5", "9|5", "10|5", "11|6", "12|6"}));
   EXPECT_EQ(Query(path, "SELECT * FROM frame_data"),
             (std::vector<std::string>{"8|1|1|0", "9|2|1|0", "10|3|1|0", "11|4|2|0", "12|5|2|0"}));
+}
+
+// What COLMAP's matchers leave for pictures whose descriptors are stubs: 3.8 and 3.10 with config
+// 0, 4.2.1 with config 1, which our own rows of pairs without inliers have too.
+TEST(ColmapFormats, RowsOfColmapsMatchersAreNoMatchesOfOurs) {
+  for (const char* config : {"0", "1"}) {
+    const TempDir dir;
+    MakeDatabaseWithFrames(dir / "a.db");
+    ColmapDatabase db(dir / "a.db", Mode::kReadWrite);
+    AddImage(&db, "b.jpg", 1);
+    Execute(dir / "a.db",
+            "INSERT INTO matches VALUES(2147483649, 0, 2, NULL);"
+            "INSERT INTO two_view_geometries(pair_id, rows, cols, data, config) "
+            "VALUES(2147483649, 0, 2, NULL, " +
+                std::string(config) + ")");
+    EXPECT_FALSE(HasMatches(db, {1, 2})) << config;
+    TwoViewGeometry none;
+    none.config = TwoViewConfig::kDegenerate;
+    WriteMatches(&db, 1, 2, {}, none);
+    EXPECT_TRUE(HasMatches(db, {1, 2})) << config;
+  }
+}
+
+// The table as COLMAP 3.10 and 4.2.1 made it: neither opens a database with the other's.
+constexpr char kPosePriorsOf310[] =
+    "CREATE TABLE pose_priors   (image_id          INTEGER  PRIMARY KEY  NOT NULL,    position"
+    "          BLOB,    coordinate_system INTEGER               NOT NULL,FOREIGN KEY(image_id) "
+    "REFERENCES images(image_id) ON DELETE CASCADE); "
+    "INSERT INTO pose_priors VALUES(1, zeroblob(24), 1)";
+constexpr char kPosePriorsOf421[] =
+    "CREATE TABLE pose_priors   (pose_prior_id              INTEGER  PRIMARY KEY  NOT NULL,    "
+    "corr_data_id               INTEGER               NOT NULL,    corr_sensor_id             "
+    "INTEGER               NOT NULL,    corr_sensor_type           INTEGER               NOT NULL,"
+    "    position                   BLOB,    position_covariance        BLOB,    gravity"
+    "                    BLOB,    coordinate_system          INTEGER               NOT NULL); "
+    "CREATE UNIQUE INDEX pose_prior_data_assignment ON    pose_priors(corr_data_id, "
+    "corr_sensor_id, "
+    "corr_sensor_type); "
+    "INSERT INTO pose_priors VALUES(1, 1, 1, 0, zeroblob(24), NULL, NULL, 1)";
+
+TEST(DatabaseCopy, TakesAllButThePosePriorsOfAnyVersion) {
+  for (const char* pose_priors : {"", kPosePriorsOf310, kPosePriorsOf421}) {
+    const TempDir dir;
+    MakeDatabaseWithFrames(dir / "a.db");
+    Execute(dir / "a.db", pose_priors);
+    auto rows = AllRows(dir / "a.db");
+    {
+      const ColmapDatabase db(dir / "a.db", Mode::kReadOnly);
+      EXPECT_EQ(HasPosePriorTable(db), *pose_priors != '\0');
+      WriteBytes(dir / "copy.db", "in the way");
+      CopyDatabase(db, dir / "copy.db");
+    }
+    EXPECT_EQ(AllRows(dir / "a.db"), rows);
+    rows.erase("pose_priors");
+    EXPECT_EQ(AllRows(dir / "copy.db"), rows);
+    EXPECT_FALSE(HasPosePriorTable(ColmapDatabase(dir / "copy.db", Mode::kReadWrite)));
+    EXPECT_EQ(Query(dir / "copy.db", "SELECT name FROM sqlite_master WHERE name LIKE 'pose%'"),
+              std::vector<std::string>());
+    ExpectSound(dir / "copy.db");
+    RemoveDatabase(dir / "copy.db");
+    EXPECT_FALSE(std::filesystem::exists(dir / "copy.db"));
+  }
 }
 
 }  // namespace

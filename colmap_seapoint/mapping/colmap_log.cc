@@ -1,0 +1,71 @@
+#include "colmap_seapoint/mapping/colmap_log.h"
+
+#include <cctype>
+
+namespace colmap_seapoint {
+namespace {
+
+constexpr char kEscape = '\033';
+constexpr size_t kDateDigits = 8;
+
+bool BeginsWith(const std::string& text, const char* beginning) {
+  return text.rfind(beginning, 0) == 0;
+}
+
+bool Contains(const std::string& text, const char* part) {
+  return text.find(part) != std::string::npos;
+}
+
+// Without "\033[0;31m" and the like.
+std::string WithoutColors(const std::string& line) {
+  std::string text;
+  for (size_t i = 0; i < line.size(); ++i) {
+    if (line[i] != kEscape) {
+      text += line[i];
+      continue;
+    }
+    while (i + 1 < line.size() && std::isalpha(static_cast<unsigned char>(line[i])) == 0) ++i;
+  }
+  return text;
+}
+
+// "I20261129 " and so on: a letter for how bad it is, and the date.
+bool HasLogMark(const std::string& text) {
+  if (text.size() < kDateDigits + 2 || !Contains("IWEF", text.substr(0, 1).c_str())) return false;
+  for (size_t i = 1; i <= kDateDigits; ++i) {
+    if (std::isdigit(static_cast<unsigned char>(text[i])) == 0) return false;
+  }
+  return text[kDateDigits + 1] == ' ';
+}
+
+std::string Trimmed(const std::string& text) {
+  const size_t begin = text.find_first_not_of(" \t\r");
+  if (begin == std::string::npos) return "";
+  return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
+}
+
+}  // namespace
+
+std::string MessageOf(const std::string& line) {
+  std::string text = WithoutColors(line);
+  if (HasLogMark(text)) {
+    const size_t end = text.find("] ");
+    text = end == std::string::npos ? "" : text.substr(end + 2);
+  }
+  text = Trimmed(text);
+  const bool is_trace = BeginsWith(text, "@ ") || BeginsWith(text, "PC: @") ||
+                        BeginsWith(text, "*** Aborted at ") || BeginsWith(text, "*** SIG") ||
+                        BeginsWith(text, "*** Check failure stack trace");
+  return is_trace ? "" : text;
+}
+
+bool SaysThatThereIsNoModel(const std::string& message) {
+  return Contains(message, "ailed to create sparse model") ||    // 3.8, and global_mapper
+         Contains(message, "ailed to create any sparse model");  // 4.x
+}
+
+bool SaysThatAnOptionIsRefused(const std::string& message) {
+  return Contains(message, "parse options") || Contains(message, "Invalid options");
+}
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,75 @@
+// Lines as COLMAP 3.8, 3.10 and 4.2.1 of Debian's packages printed them.
+#include "colmap_seapoint/mapping/colmap_log.h"
+
+#include <gtest/gtest.h>
+
+namespace colmap_seapoint {
+namespace {
+
+TEST(MessageOfTest, TheSameOfEveryVersion) {
+  EXPECT_EQ(MessageOf("COLMAP 3.8 (Commit Unknown on Unknown without CUDA)"),
+            "COLMAP 3.8 (Commit Unknown on Unknown without CUDA)");
+  EXPECT_EQ(MessageOf("I20261129 07:24:37.251585 12325 option_manager.cc:847] COLMAP 3.10-dev "
+                      "(Commit Unknown on Unknown without CUDA)"),
+            "COLMAP 3.10-dev (Commit Unknown on Unknown without CUDA)");
+  EXPECT_EQ(
+      MessageOf("I20261129 07:26:52.421883 17465 option_manager.cc:1319] COLMAP 4.2.1 (Commit "
+                "Unknown on Unknown without GPU support, std hash maps)"),
+      "COLMAP 4.2.1 (Commit Unknown on Unknown without GPU support, std hash maps)");
+}
+
+TEST(MessageOfTest, WithoutColorsAlsoOfTheLineBefore) {
+  EXPECT_EQ(MessageOf("\033[0;31mE20261129 07:34:07.646452 22084 sfm.cc:310] Failed to create any "
+                      "sparse model"),
+            "Failed to create any sparse model");
+  EXPECT_EQ(MessageOf("\033[m\033[0;33mW20261129 07:32:28.686106 12861 database.cc:53] Failed to "
+                      "open database"),
+            "Failed to open database");
+  EXPECT_EQ(MessageOf("\033[m"), "");
+  EXPECT_EQ(MessageOf("\033"), "");
+  EXPECT_EQ(MessageOf("\033[0;31"), "");
+}
+
+TEST(MessageOfTest, NothingOfAStackTrace) {
+  for (const char* line :
+       {"*** Aborted at 1795937411 (unix time) try \"date -d @1795937411\" if you are using GNU "
+        "date ***",
+        "PC: @                0x0 (unknown)",
+        "*** SIGABRT (@0x6f6b) received by PID 28523 (TID 0x7fc1c7bdaa00) from PID 28523; stack "
+        "trace: ***",
+        "    @     0x7fc1cbe34ac abort", "    @     0x7fc1cc0a15e9 std::terminate()"}) {
+    EXPECT_EQ(MessageOf(line), "") << line;
+  }
+  EXPECT_EQ(MessageOf("  what():  [database.cc:1084] SQLite error: SQL logic error"),
+            "what():  [database.cc:1084] SQLite error: SQL logic error");
+}
+
+TEST(MessageOfTest, WhatOnlyLooksLikeAMarkStays) {
+  for (const char* line : {"Images 20261129 ] a", "I2026112 07:24 a.cc:1] b", "I20261129", "E",
+                           "X20261129 07:24:37.251585 12325 a.cc:847] b"}) {
+    EXPECT_EQ(MessageOf(line), line);
+  }
+  EXPECT_EQ(MessageOf("I20261129 07:24:37 cut off"), "");
+  EXPECT_EQ(MessageOf(" \t\r"), "");
+  EXPECT_EQ(MessageOf(""), "");
+}
+
+TEST(SaysThatThereIsNoModelTest, InEachVersionsWords) {
+  EXPECT_TRUE(SaysThatThereIsNoModel("ERROR: failed to create sparse model"));  // 3.8
+  EXPECT_TRUE(SaysThatThereIsNoModel("failed to create sparse model"));         // 3.10
+  EXPECT_TRUE(SaysThatThereIsNoModel("Failed to create any sparse model"));     // 4.2.1 mapper
+  EXPECT_TRUE(SaysThatThereIsNoModel("Failed to create sparse model"));         // its global_mapper
+  EXPECT_FALSE(SaysThatThereIsNoModel("No images with matches found in the database"));
+}
+
+TEST(SaysThatAnOptionIsRefusedTest, InEachVersionsWords) {
+  EXPECT_TRUE(SaysThatAnOptionIsRefused("ERROR: Failed to parse options - unrecognised option"));
+  EXPECT_TRUE(
+      SaysThatAnOptionIsRefused("Failed to parse options - the argument ('x') for option "
+                                "'--Mapper.min_model_size' is invalid."));
+  EXPECT_TRUE(SaysThatAnOptionIsRefused("Invalid options provided."));
+  EXPECT_FALSE(SaysThatAnOptionIsRefused("Elapsed time: 0.009 [minutes]"));
+}
+
+}  // namespace
+}  // namespace colmap_seapoint
