@@ -79,9 +79,9 @@ void WriteResult(const ModelScalerOptions& options, const ScaleMeasurements& mea
   ClaimOutputs(options, folder);
   WriteScaleJson(output / kScaleFile, measurements, estimate);
   TransformModel(metric_from_model, model);
-  TransformRigFiles(input, output, metric_from_model);
   IsBinaryModel(input) ? WriteSparseModelBinary(output, *model)
                        : WriteSparseModelText(output, *model);
+  TransformRigFiles(input, output, metric_from_model);
   if (!options.cloud_path.empty()) {
     const fs::path cloud = options.cloud_path;
     const uint64_t count = TransformCloud(cloud, output / cloud.filename(), metric_from_model);

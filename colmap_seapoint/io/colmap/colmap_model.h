@@ -44,7 +44,8 @@ bool IsSparseModel(const std::filesystem::path& dir);
 std::vector<std::string> ModelFileNames();
 bool IsModelFile(const std::string& name);
 
-// Write all three files; each is written under a temporary name and renamed. `dir` is created.
+// Write all three files; each is written under a temporary name and renamed. `dir` is created. Rigs
+// and frames that are there are removed, whose poses would count more than those written here.
 void WriteSparseModelText(const std::filesystem::path& dir, const SparseModel& model);
 void WriteSparseModelBinary(const std::filesystem::path& dir, const SparseModel& model);
 

@@ -4,6 +4,7 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/colmap/colmap_model_internal.h"
+#include "colmap_seapoint/io/colmap/colmap_rigs.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/input_stream.h"
 
@@ -263,6 +264,7 @@ void WriteSparseModelText(const std::filesystem::path& dir, const SparseModel& m
   WriteCameras(&cameras, model);
   WriteImages(&images, model);
   WritePoints(&points, model);
+  RemoveRigFiles(dir);
   cameras.Commit();
   images.Commit();
   points.Commit();

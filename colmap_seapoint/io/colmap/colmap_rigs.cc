@@ -204,6 +204,16 @@ bool IsBinaryModel(const std::filesystem::path& dir) {
   return IsFile(dir / "cameras.bin") && IsFile(dir / "images.bin") && IsFile(dir / "points3D.bin");
 }
 
+void RemoveRigFiles(const std::filesystem::path& dir) {
+  for (const char* name : {"rigs.bin", "frames.bin", "rigs.txt", "frames.txt"}) {
+    std::error_code error;
+    std::filesystem::remove(dir / name, error);
+    if (!error) continue;
+    throw Error((dir / name).string(), "cannot be removed (" + error.message() + ")",
+                "check the folder's permissions");
+  }
+}
+
 void TransformRigFiles(const std::filesystem::path& from, const std::filesystem::path& to,
                        const Similarity3d& new_from_old) {
   const Move of_rig = [&](const Rigid3d& sensor_from_rig) {

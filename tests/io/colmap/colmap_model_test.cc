@@ -178,6 +178,23 @@ TEST(ColmapModel, Frames) {
   EXPECT_ERROR(ReadFrames(dir.Path(), MakeModel()), "pictures of a frame is more than the file");
 }
 
+// COLMAP 4.2.1 would go on with the poses that its frames had before.
+TEST(ColmapModel, WritingLeavesNoFramesOfOtherPoses) {
+  const TempDir dir;
+  for (const bool is_binary : {true, false}) {
+    const auto names = {"rigs.bin", "frames.bin", "rigs.txt", "frames.txt"};
+    for (const char* name : names) WriteBytes(dir / name, "of other poses");
+    is_binary ? WriteSparseModelBinary(dir.Path(), MakeModel())
+              : WriteSparseModelText(dir.Path(), MakeModel());
+    for (const char* name : names) EXPECT_FALSE(std::filesystem::exists(dir / name)) << name;
+    EXPECT_EQ(ReadSparseModel(dir.Path()).images.size(), 2u);
+  }
+  // A folder in the place of one is not removed with all that it holds.
+  std::filesystem::create_directories(dir / "frames.bin" / "mine");
+  EXPECT_ERROR(WriteSparseModelBinary(dir.Path(), MakeModel()), "frames.bin");
+  EXPECT_TRUE(std::filesystem::exists(dir / "frames.bin" / "mine"));
+}
+
 TEST(ColmapModel, MissingFiles) {
   const TempDir dir;
   EXPECT_ERROR(ReadSparseModel(dir / "missing"), "there is no such folder");
