@@ -115,7 +115,9 @@ class MapperRounds {
                   "its output is in " +
                       (job_.log_folder / "mapper_1.log").string());
     }
-    JoinModelsOfRounds(job_, [this](const fs::path& folder) { Polish(folder); });
+    if (job_.joins_models) {
+      JoinModelsOfRounds(job_, [this](const fs::path& folder) { Polish(folder); });
+    }
   }
 
  private:

@@ -53,8 +53,8 @@ std::string Inputs(const MappingPlan& plan, const ColmapDatabase& database,
   const auto begun = state.Read("database");
   return DatabaseFingerprint(database) + (begun ? begun->dump() : "") + plan.colmap.version +
          LensText(job.lens) + (job.thins_matches ? "thinned" : "") +
-         (job.adjusts_principal_point ? "adjusted" : "") + (job.global_round ? "global" : "") +
-         Text(job.first_round) + Text(job.later_rounds);
+         (job.adjusts_principal_point ? "adjusted" : "") + (job.joins_models ? "joined" : "") +
+         (job.global_round ? "global" : "") + Text(job.first_round) + Text(job.later_rounds);
 }
 
 // The models below `sparse` that are ours.
@@ -154,6 +154,7 @@ MappingPlan PlanMapping(const AutomaticReconstructorOptions& options, const Work
   }
   job.thins_matches = adjusts && options.quality != "archive";
   job.adjusts_principal_point = options.adjust_principal_point;
+  job.joins_models = options.join_models;
   job.num_threads = options.run.num_threads;
   return plan;
 }

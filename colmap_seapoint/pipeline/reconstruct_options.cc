@@ -31,6 +31,10 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
              "after mapping, adjust every model once more with the principal point free; not with "
              "--ImageReader.camera_params or --Mapper.ba_refine_*",
              "ours");
+  table->Add("join_models", &join_models,
+             "make one of two models where verified matches between them can be trusted; 0 where "
+             "places look so alike that it joins what does not belong together",
+             "ours");
   table->Add("rig", &rig, kRigHelp, "paper 4");
   scale.Bind(table);
   reader.Bind(table);

@@ -372,10 +372,13 @@ TEST_F(ScaledReconstruction, TwoModelsAndABarInOneOfThem) {
   const Eigen::Vector3d a = left + Eigen::Vector3d(-0.1, 0.2, kStripRange);
   const Eigen::Vector3d b = left + Eigen::Vector3d(0, -0.3, kStripRange);
   std::vector<std::string> arguments = {
+      "--join_models",
+      "0",
       "--scale_bars_path",
       Write("bars.csv",
             "name1,name2,length_m,sigma_m\na,b," + Number(kScale * (b - a).norm()) + ",0.02\n"),
-      "--targets_path", Write("targets.csv", "target,image,x,y\n" + Marks("a", a) + Marks("b", b))};
+      "--targets_path",
+      Write("targets.csv", "target,image,x,y\n" + Marks("a", a) + Marks("b", b))};
   CliResult result = Reconstruct(arguments);
   EXPECT_EQ(result.exit_code, 3) << result.Text();
   EXPECT_EQ(At("report/run.json")["units"], "metres and arbitrary, see summary.txt");

@@ -155,7 +155,7 @@ TEST_F(Reconstructor, PicturesInNoModelAreNamed) {
 }
 
 TEST_F(Reconstructor, EveryModelBecomesACloud) {
-  ASSERT_EQ(Reconstruct("two_models").exit_code, 0);
+  ASSERT_EQ(Reconstruct("two_models", {"--join_models", "0"}).exit_code, 0);
   EXPECT_TRUE(fs::exists(Workspace() / "dense/0/fused.ply"));
   EXPECT_TRUE(fs::exists(Workspace() / "dense/1/fused.ply"));
   // When a later run finds one model only, the second cloud does not stay behind.
@@ -165,7 +165,7 @@ TEST_F(Reconstructor, EveryModelBecomesACloud) {
 }
 
 TEST_F(Reconstructor, WhatTheFirstRoundLeavesOverGetsItsOwn) {
-  const CliResult result = Reconstruct("two_rounds");
+  const CliResult result = Reconstruct("two_rounds", {"--join_models", "0"});
   EXPECT_EQ(result.exit_code, 0) << result.Text();
   EXPECT_EQ(ReadSparseModel(Workspace() / "sparse/0").images.size(), 3u);
   EXPECT_EQ(ReadSparseModel(Workspace() / "sparse/1").images.size(), 3u);

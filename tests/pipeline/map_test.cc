@@ -266,6 +266,7 @@ TEST_F(MapPicturesTest, MapsAgainWhenOptionsChange) {
   const std::vector<std::function<void(Options*)>> changes = {
       [](Options* options) { options->mapper["Mapper.min_model_size"] = "4"; },
       [](Options* options) { options->adjust_principal_point = false; },
+      [](Options* options) { options->join_models = false; },
       [](Options* options) { options->run.random_seed = 1; },
       [](Options* options) { options->reader.camera_params = "480,480,200,150,0,0,0,0"; },
   };
