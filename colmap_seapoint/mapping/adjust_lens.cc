@@ -8,6 +8,7 @@
 
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/image/image_file.h"
+#include "colmap_seapoint/io/image/picture_masks.h"
 #include "colmap_seapoint/mapping/retriangulate.h"
 #include "colmap_seapoint/mapping/sound_adjustment.h"
 #include "colmap_seapoint/remeasuring/remeasure_observations.h"
@@ -60,6 +61,12 @@ bool HoldsFirmly(const SparseModel& before, const SparseModel& after) {
 std::optional<SparseModel> MeasuredAgain(const SparseModel& model, const AdjustmentJob& job) {
   RemeasuringOptions options;
   options.num_threads = job.num_threads;
+  if (!job.mask_path.empty()) {
+    options.read_mask = [&, masks = PictureMasks(job.mask_path)](const PosedImage& image) {
+      const Camera& camera = model.cameras.at(image.camera_id);
+      return masks.ReadForResampling(image.name, camera.width, camera.height);
+    };
+  }
   const auto read = [&](const PosedImage& image) {
     return ReadGrayImage(job.image_path / image.name);
   };

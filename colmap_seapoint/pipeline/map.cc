@@ -105,6 +105,12 @@ void PutModelsInPlace(const fs::path& from, const fs::path& sparse, OutputFolder
 MappingPlan PlanMapping(const AutomaticReconstructorOptions& options, const Workspace& workspace) {
   MappingPlan plan;
   plan.colmap = FindColmap(options.colmap_path, options.colmap_timeout);
+  const std::string problem =
+      CameraModelProblem(plan.colmap, *FindCameraModel(options.reader.camera_model));
+  if (!problem.empty()) {
+    throw UsageError("ImageReader.camera_model: " + problem +
+                     "; choose another one, or give --colmap_path of a newer COLMAP");
+  }
   const int seed = options.run.random_seed;
   const bool finds_lens = FindsLens(options);
   // Where the lens is ours to find, the models are adjusted by us afterwards (adjust_lens.h); where
@@ -113,6 +119,7 @@ MappingPlan PlanMapping(const AutomaticReconstructorOptions& options, const Work
   MapperJob& job = plan.job;
   job.database_path = workspace.database;
   job.image_path = workspace.images;
+  job.mask_path = options.reader.mask_path;
   job.output_path = workspace.sparse.string() + ".tmp";
   plan.sparse = workspace.sparse;
   job.log_folder = workspace.report;

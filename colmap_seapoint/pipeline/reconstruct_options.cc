@@ -32,6 +32,7 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
              "--ImageReader.camera_params or --Mapper.ba_refine_*",
              "ours");
   table->Add("rig", &rig, kRigHelp, "paper 4");
+  table->Add("mask_path", &reader.mask_path, "the same as --ImageReader.mask_path", "COLMAP");
   scale.Bind(table);
   reader.Bind(table);
   extraction.Bind(table);

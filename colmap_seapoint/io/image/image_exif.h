@@ -7,6 +7,7 @@
 
 #include "colmap_seapoint/base/geodesy.h"
 #include "colmap_seapoint/io/image/image_codecs.h"
+#include "colmap_seapoint/io/image/image_file.h"
 
 namespace colmap_seapoint {
 
@@ -14,6 +15,8 @@ struct ExifInfo {
   std::optional<double> focal_length_px;
   int orientation = 1;
   std::optional<GeoPosition> gps;
+  CaptureHeights heights;
+  std::string taken;
   std::string camera_key;
 };
 
