@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <utility>
 
 #include "colmap_seapoint/base/median.h"
 
@@ -19,6 +21,8 @@ constexpr double kOutlier = 3;           // times the median residual: what is f
 constexpr double kMinPlaced = 0.5;       // share of the pictures
 constexpr size_t kMinPictures = 6;       // a similarity of seven unknowns leaves some to tell by
 constexpr double kMaxUnexplained = 0.1;  // of the track's squared extent; else nothing fits
+constexpr double kClearlyFewer = 0.95;   // of the pictures placed
+constexpr size_t kMaxMinima = 60;        // that are followed down
 constexpr double kExact = 1e-10;         // the same, of a log without noise
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -133,14 +137,16 @@ class OffsetSearch {
 
   ClockOffset Run(const std::vector<OffsetRange>& ranges) {
     for (const OffsetRange& range : ranges) Scan(range);
-    const auto best = std::min_element(curve_.begin(), curve_.end(), IsLower);
+    std::vector<Minimum> minima = FindMinima();
     ClockOffset result;
-    if (best == curve_.end() || best->cost == kInfinity) {
+    if (minima.empty()) {
       result.problem = "it places fewer than half of the pictures at any offset";
       return result;
     }
-    Refine(best->offset, &result);
-    if (result.problem.empty()) Bound(&result);
+    const double limit = Limit(minima.front());
+    KeepAsGood(limit, &minima);
+    Choose(minima.front(), &result);
+    if (result.problem.empty()) Bound(minima, limit, &result);
     return result;
   }
 
@@ -148,7 +154,11 @@ class OffsetSearch {
   struct Sample {
     double offset, cost;
   };
-  static bool IsLower(const Sample& a, const Sample& b) { return a.cost < b.cost; }
+  struct Minimum {
+    size_t sample;  // of the curve
+    double offset;
+    TrackFit fit;  // of the few
+  };
 
   void Scan(const OffsetRange& range) {
     const auto steps = static_cast<int64_t>(std::floor((range.high - range.low) / kStep));
@@ -158,48 +168,110 @@ class OffsetSearch {
     }
   }
 
-  // With all pictures, by golden section around the best of the steps.
-  void Refine(double start, ClockOffset* result) const {
+  // Whether the two are next to each other in one range.
+  bool AreNeighbors(size_t a, size_t b) const {
+    return b < curve_.size() && a < curve_.size() &&
+           std::abs(curve_[a].offset - curve_[b].offset) < 1.5 * kStep;
+  }
+
+  // The deepest of the curve's minima, each followed down between its steps; the least first.
+  std::vector<Minimum> FindMinima() const {
+    std::vector<size_t> steps;
+    for (size_t i = 0; i < curve_.size(); ++i) {
+      const bool above_left = AreNeighbors(i, i - 1) && curve_[i].cost > curve_[i - 1].cost;
+      const bool above_right = AreNeighbors(i, i + 1) && curve_[i].cost > curve_[i + 1].cost;
+      if (curve_[i].cost < kInfinity && !above_left && !above_right) steps.push_back(i);
+    }
+    std::sort(steps.begin(), steps.end(), [&](size_t a, size_t b) {
+      return std::pair(curve_[a].cost, a) < std::pair(curve_[b].cost, b);
+    });
+    if (steps.size() > kMaxMinima) steps.resize(kMaxMinima);
+    std::vector<Minimum> minima;
+    for (const size_t i : steps) {
+      const double offset = FollowDown(few_, curve_[i].offset);
+      minima.push_back({i, offset, FitTrack(few_, log_, offset)});
+    }
+    std::stable_sort(minima.begin(), minima.end(),
+                     [](const Minimum& a, const Minimum& b) { return a.fit.cost < b.fit.cost; });
+    return minima;
+  }
+
+  // By golden section.
+  double FollowDown(const std::vector<TimedCenter>& track, double start) const {
     constexpr double kGolden = 0.6180339887498949;
     double low = start - kStep, high = start + kStep;
     while (high - low > kFine / 4) {
       const double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
-      if (FitTrack(track_, log_, a).cost <= FitTrack(track_, log_, b).cost) {
+      if (FitTrack(track, log_, a).cost <= FitTrack(track, log_, b).cost) {
         high = b;
       } else {
         low = a;
       }
     }
-    result->seconds = (low + high) / 2;
+    return (low + high) / 2;
+  }
+
+  // What chance alone may make of the least cost.
+  double Limit(const Minimum& least) const {
+    const double n = NumIndependent(few_, log_, least.offset);
+    return least.fit.cost * (1 + 4 * std::sqrt(2 / n)) + kExact;
+  }
+
+  // The minima within the limit, without those that place clearly fewer pictures.
+  static void KeepAsGood(double limit, std::vector<Minimum>* minima) {
+    size_t most = 0;
+    for (const Minimum& minimum : *minima) {
+      if (minimum.fit.cost <= limit) most = std::max(most, minimum.fit.num_placed);
+    }
+    const auto is_worse = [&](const Minimum& minimum) {
+      return minimum.fit.cost > limit || static_cast<double>(minimum.fit.num_placed) <
+                                             kClearlyFewer * static_cast<double>(most);
+    };
+    minima->erase(std::remove_if(minima->begin(), minima->end(), is_worse), minima->end());
+  }
+
+  // With all pictures.
+  void Choose(const Minimum& best, ClockOffset* result) const {
+    result->seconds = FollowDown(track_, best.offset);
     const TrackFit fit = FitTrack(track_, log_, result->seconds);
     result->rms_m = fit.rms_m;
     result->num_placed = fit.num_placed;
-    if (!(fit.cost <= kMaxUnexplained)) {
-      result->problem =
-          "it fits the cameras' track nowhere, and leaves " +
-          std::to_string(static_cast<int>(std::lround(100 * std::sqrt(std::min(fit.cost, 1.0))))) +
-          " % of the track's extent unexplained";
-    }
+    if (fit.cost <= kMaxUnexplained) return;
+    const double unexplained = 100 * std::sqrt(std::min(fit.cost, 1.0));
+    result->problem = "it fits the cameras' track nowhere, and leaves " +
+                      std::to_string(std::lround(unexplained)) +
+                      " % of the track's extent unexplained";
   }
 
-  // The offsets that fit as well: of the steps, and between the last one and the next by halving.
-  void Bound(ClockOffset* result) const {
-    const double least = FitTrack(few_, log_, result->seconds).cost;
-    const double n = NumIndependent(few_, log_, result->seconds);
-    const double limit = least * (1 + 4 * std::sqrt(2 / n)) + kExact;
+  // The stretches around the minima that fit as well.
+  void Bound(const std::vector<Minimum>& minima, double limit, ClockOffset* result) const {
     result->low = result->high = result->seconds;
-    for (const Sample& sample : curve_) {
-      if (sample.cost > limit) continue;
-      result->low = std::min(result->low, sample.offset);
-      result->high = std::max(result->high, sample.offset);
+    double covered_low = kInfinity, covered_high = -kInfinity;  // the last stretch
+    for (const Minimum& minimum : minima) {
+      const bool is_new = minimum.offset < covered_low || minimum.offset > covered_high;
+      if (is_new) result->alternatives.push_back(minimum.offset);
+      const double low = Edge(minimum, -1, limit), high = Edge(minimum, 1, limit);
+      result->low = std::min(result->low, low);
+      result->high = std::max(result->high, high);
+      if (is_new) {
+        covered_low = low;
+        covered_high = high;
+      }
     }
-    result->low = Edge(result->low, -kStep, limit);
-    result->high = Edge(result->high, kStep, limit);
     result->is_determined = (result->high - result->low) / 2 <= kMaxOffsetUncertainty;
   }
 
-  double Edge(double inside, double step, double limit) const {
-    double outside = inside + step;
+  // Along the steps as long as they fit, then by halving.
+  double Edge(const Minimum& minimum, int direction, double limit) const {
+    size_t at = minimum.sample;
+    double inside = minimum.offset;
+    while (true) {
+      const size_t next = direction > 0 ? at + 1 : at - 1;
+      if (!AreNeighbors(at, next) || curve_[next].cost > limit) break;
+      at = next;
+      inside = curve_[at].offset;
+    }
+    double outside = inside + direction * kStep;
     while (std::abs(outside - inside) > kFine / 2) {
       const double middle = (inside + outside) / 2;
       (FitTrack(few_, log_, middle).cost <= limit ? inside : outside) = middle;

@@ -4,7 +4,8 @@
 // A camera's clock is set by hand, a log's by satellites, and half a minute between them is usual.
 // At each offset, the log says where every picture was taken, and the similarity that brings the
 // model's track onto these places leaves a residual; at the true offset it is the log's noise. A
-// straight track at constant speed fits everywhere: then the offset cannot be determined.
+// straight track at constant speed fits everywhere, and strips that repeat each other fit several
+// times: then the offset cannot be determined.
 #pragma once
 
 #include <Eigen/Core>
@@ -42,8 +43,11 @@ struct ClockOffset {
   bool is_determined = false;
   double seconds = 0;        // log's clock minus camera's
   double low = 0, high = 0;  // what fits as well as noise can tell
-  double rms_m = 0;          // of the fit at `seconds`
-  size_t num_placed = 0;     // pictures that the log has a place for, at `seconds`
+  // Where the cost is least in each separate stretch of these, the best one first: several where
+  // the track repeats itself.
+  std::vector<double> alternatives;
+  double rms_m = 0;       // of the fit at `seconds`
+  size_t num_placed = 0;  // pictures that the log has a place for, at `seconds`
 };
 
 // The log with its fixes in the order of their times, one a time (the first), without what is not
@@ -57,7 +61,9 @@ std::optional<Eigen::Vector3d> PlaceAt(const std::vector<LogFix>& log, double se
 // Robust against a fifth of wrong fixes. The cost of an offset is the mean squared residual over
 // the squared extent of the track, so that a log that stands still fits nothing; an offset counts
 // where the log places half of the pictures. All offsets whose cost lies within the chance scatter
-// of the least one's fit as well: 1 + 4 sqrt(2 / n), of n independent residuals. Never throws. One
+// of the least one's fit as well: 1 + 4 sqrt(2 / n), of n independent residuals; but not those of a
+// separate stretch at which the log places clearly fewer of the pictures, since it was written
+// during the whole dive. Never throws. One
 // thread; about 20 microseconds an offset, two offsets a second of `ranges`.
 ClockOffset FindClockOffset(const std::vector<TimedCenter>& track, const std::vector<LogFix>& log,
                             const std::vector<OffsetRange>& ranges);

@@ -11,7 +11,8 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr double kHalfHour = 1800;  // time zones differ by multiples of it
-constexpr int kMaxZone = 28;        // half hours
+constexpr size_t kMaxNamed = 4;
+constexpr int kMaxZone = 28;  // half hours
 
 std::string Seconds(double seconds) {
   char text[64];
@@ -122,11 +123,22 @@ std::string ClockText(const ClockOffset& offset, double taken) {
     if (std::abs(offset.seconds) >= kHalfHour) text += "; one of the two is in another time zone";
     return text;
   }
-  return "how far its clock is from the camera's cannot be determined: all from " +
+  const std::string taken_text =
+      "; " + Seconds(taken) +
+      " is taken, so that places along the track may be off by as much time (give --nav_offset if "
+      "you know it)";
+  std::string text = "how far its clock is from the camera's cannot be determined: ";
+  const auto& several = offset.alternatives;
+  if (several.size() < 2) {
+    return text + "all from " + Seconds(offset.low) + " to " + Seconds(offset.high) +
+           " fit equally well, as on a straight track at constant speed" + taken_text;
+  }
+  for (size_t i = 0; i < std::min(several.size(), kMaxNamed); ++i) {
+    text += (i == 0 ? "" : ", ") + Seconds(several[i]);
+  }
+  return text + (several.size() > kMaxNamed ? " and others" : "") + ", from " +
          Seconds(offset.low) + " to " + Seconds(offset.high) +
-         " fit equally well, as on a straight track at constant speed; " + Seconds(taken) +
-         " is taken, so that places along the track may be off by as much time (give --nav_offset "
-         "if you know it)";
+         ", fit equally well: the track repeats itself" + taken_text;
 }
 
 void AddPlaces(const std::vector<TimedPicture>& pictures, const NavLog& log, double offset,

@@ -68,7 +68,10 @@ std::filesystem::path ModelPictures::PathOf(int image_idx) const {
 std::string ModelPictures::Check(int image_idx) const {
   try {
     const ImageInfo info = ReadImageInfo(PathOf(image_idx));
-    return SizeProblem(model_.cameras.at(ImageAt(image_idx).camera_id), info.width, info.height);
+    const std::string problem =
+        SizeProblem(model_.cameras.at(ImageAt(image_idx).camera_id), info.width, info.height);
+    if (!problem.empty()) return problem;
+    return masks_.Problem(ImageAt(image_idx).name, info.width, info.height);
   } catch (const Error& error) {
     return error.Finding();
   }

@@ -32,7 +32,8 @@ class ModelPictures : public PictureSource {
                 const SeaPointExtractionOptions& extraction,
                 const SeaPointMatchingOptions& matching);
 
-  // "" when the picture's header is readable and of its camera's size; else the reason. Cheap.
+  // "" when the picture's header is readable and of its camera's size, and its mask's fits; else
+  // the reason. Cheap.
   std::string Check(int image_idx) const;
   // How many of the model's pictures have SeaPoints in the database.
   int NumInDatabase() const { return static_cast<int>(in_database_.size()); }

@@ -229,9 +229,9 @@ std::unique_ptr<MapWriter> StartMaps(const PartialDensifierOptions& options,
                                      const SparseModel& model, OutputFolder* folder) {
   if (!options.densification.write_maps) return nullptr;
   folder->Claim(DenseMapNames(NamesOf(model)));
-  auto maps = std::make_unique<MapWriter>(model, options.image_path, options.output_path,
-                                          options.densification,
-                                          EffectiveNumThreads(options.run.num_threads));
+  auto maps = std::make_unique<MapWriter>(
+      model, options.image_path, PictureMasks(options.mask_path), options.output_path,
+      options.densification, EffectiveNumThreads(options.run.num_threads));
   maps->WriteModel(ReadModel(options, ModelContent::kTriangulated));
   return maps;
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -14,8 +15,8 @@ using Path = std::function<Eigen::Vector3d(double)>;  // seconds -> metres
 
 constexpr double kTruth = 34.8;
 
-// Strips of 20 m, 2 m apart, at 0.4 m/s.
-Eigen::Vector3d Lawnmower(double seconds) {
+// Strips of 20 m, 2 m apart, at 0.4 m/s, without an end.
+Eigen::Vector3d Strips(double seconds) {
   const double strip_seconds = 50, turn_seconds = 5;
   const double period = strip_seconds + turn_seconds;
   const double strip = std::floor(seconds / period), within = seconds - strip * period;
@@ -23,6 +24,12 @@ Eigen::Vector3d Lawnmower(double seconds) {
   const double turn = std::clamp((within - strip_seconds) / turn_seconds, 0.0, 1.0) * 2;
   const bool is_back = static_cast<int64_t>(strip) % 2 != 0;
   return {is_back ? 20 - along : along, 2 * strip + turn, -10};
+}
+
+// The same between the dive down to them and the way up.
+Eigen::Vector3d Lawnmower(double seconds) {
+  const double within = std::clamp(seconds, 85.0, 355.0);
+  return Strips(within) + Eigen::Vector3d(0, 0, 0.3 * std::abs(seconds - within));
 }
 
 Eigen::Vector3d Straight(double seconds) { return {0.3 * seconds, 0.1 * seconds, -10}; }
@@ -63,6 +70,30 @@ TEST(ClockOffsetTest, FoundWithinHalfASecond) {
     EXPECT_GE(found.high, kTruth);
     EXPECT_NEAR(found.rms_m, 0.05 * std::sqrt(3.0) * 0.8, 0.03);  // between two fixes: less
   }
+}
+
+// Strips that go on for ever look the same a strip later, turned over.
+TEST(ClockOffsetTest, StripsThatRepeatEachOtherAreSaidToFitSeveralTimes) {
+  for (const double noise : {0.0, 0.05}) {
+    const ClockOffset found =
+        FindClockOffset(TrackOf(Strips), LogOf(Strips, noise), {OffsetRange()});
+    EXPECT_FALSE(found.is_determined);
+    EXPECT_LE(found.low, kTruth);
+    EXPECT_GE(found.high, kTruth);
+    ASSERT_GE(found.alternatives.size(), 3u);
+    EXPECT_TRUE(std::any_of(found.alternatives.begin(), found.alternatives.end(),
+                            [](double seconds) { return std::abs(seconds - kTruth) < 0.2; }));
+  }
+}
+
+// The log was switched on and off with the camera: a strip later it would not know the last ones.
+TEST(ClockOffsetTest, ALogThatPlacesMoreOfThePicturesIsRight) {
+  std::vector<LogFix> log = LogOf(Strips, 0.05);
+  log.erase(log.begin() + 340, log.end());
+  log.erase(log.begin(), log.begin() + 100);
+  const ClockOffset found = FindClockOffset(TrackOf(Strips), log, {OffsetRange()});
+  EXPECT_TRUE(found.is_determined) << found.low << " to " << found.high;
+  EXPECT_NEAR(found.seconds, kTruth, 0.1);
 }
 
 TEST(ClockOffsetTest, ExactWithoutNoise) {

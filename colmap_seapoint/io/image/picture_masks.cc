@@ -15,6 +15,11 @@ std::string SizeText(int width, int height) {
   return std::to_string(width) + "x" + std::to_string(height);
 }
 
+std::string OtherSize(int mask_width, int mask_height, int width, int height) {
+  return "its mask is of another size than the picture: " + SizeText(mask_width, mask_height) +
+         ", of other proportions than " + SizeText(width, height);
+}
+
 [[noreturn]] void ThrowBadMask(const std::filesystem::path& path, const Error& failure) {
   throw Error(path.string(), "its mask " + failure.Finding(), "repair or remove the mask");
 }
@@ -68,6 +73,18 @@ void PictureMasks::Check(const std::vector<std::string>& names, const std::strin
           " pictures, in " + mask_path_);
 }
 
+std::string PictureMasks::Problem(const std::string& name, int width, int height) const {
+  std::error_code error;
+  if (mask_path_.empty() || !std::filesystem::exists(PathOf(name), error)) return "";
+  try {
+    const ImageInfo mask = ReadImageInfo(PathOf(name));
+    if (AreScaledSizes(mask.width, mask.height, width, height)) return "";
+    return OtherSize(mask.width, mask.height, width, height);
+  } catch (const Error& failure) {
+    return "its mask " + failure.Finding();
+  }
+}
+
 std::optional<PictureFile> PictureMasks::Open(const std::string& name) const {
   if (mask_path_.empty()) return std::nullopt;
   std::error_code error;
@@ -90,9 +107,7 @@ GrayImage PictureMasks::Decode(const std::string& name, const std::optional<Pict
   }
   if (mask.width == width && mask.height == height) return mask;
   if (AreScaledSizes(mask.width, mask.height, width, height)) return Resized(mask, width, height);
-  throw Error(PathOf(name).string(),
-              "its mask is of another size than the picture: " + SizeText(mask.width, mask.height) +
-                  ", of other proportions than " + SizeText(width, height),
+  throw Error(PathOf(name).string(), OtherSize(mask.width, mask.height, width, height),
               "make the mask as large as its picture");
 }
 

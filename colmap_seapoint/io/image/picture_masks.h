@@ -23,6 +23,9 @@ class PictureMasks {
   // of none of the pictures; says how many have one. `option` is the one that named the folder.
   void Check(const std::vector<std::string>& names, const std::string& option) const;
 
+  // Why the mask of a picture of that size cannot be used, by its header; "" when it can, or there
+  // is none.
+  std::string Problem(const std::string& name, int width, int height) const;
   // nullopt when the picture has none. Throws Error for one that cannot be read.
   std::optional<PictureFile> Open(const std::string& name) const;
   // Of width x height, 0 where hidden; empty when `file` is nullopt. Throws Error for a mask that

@@ -69,6 +69,15 @@ TEST_F(PictureMasksTest, APixelMoreForResampling) {
   EXPECT_TRUE(masks_.ReadForResampling("b.jpg", 40, 30).Empty());
 }
 
+TEST_F(PictureMasksTest, ProblemsSeenInTheHeader) {
+  WriteImage(dir_ / "a.jpg.png", LeftHalf(20, 15));
+  EXPECT_EQ(masks_.Problem("a.jpg", 40, 30), "");
+  EXPECT_NE(masks_.Problem("a.jpg", 30, 40).find("another size"), std::string::npos);
+  EXPECT_EQ(masks_.Problem("b.jpg", 30, 40), "");
+  WriteBytes(dir_ / "b.jpg.png", "no picture");
+  EXPECT_NE(masks_.Problem("b.jpg", 40, 30), "");
+}
+
 TEST_F(PictureMasksTest, Damaged) {
   WriteBytes(dir_ / "a.jpg.png", "no picture");
   EXPECT_ERROR(masks_.Open("a.jpg"), "a.jpg.png: its mask");
