@@ -30,7 +30,7 @@ densify/sequence                colmap_seapoint/base densify/match densify/overl
 densify/maps                    colmap_seapoint/base densify/match densify/cloud
 densify                         colmap_seapoint/base densify/*
 colmap_seapoint/georeference    colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/navigation
-colmap_seapoint/navigation      colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/navigation
+colmap_seapoint/navigation      colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/navigation colmap_seapoint/georeference colmap_seapoint/pictures
 colmap_seapoint/compare         colmap_seapoint/base colmap_seapoint/io/cloud
 colmap_seapoint/tracks          colmap_seapoint/base colmap_seapoint/io/colmap
 colmap_seapoint/adjustment/equations colmap_seapoint/base

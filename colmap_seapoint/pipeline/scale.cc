@@ -11,10 +11,10 @@
 #include "colmap_seapoint/io/outputs/output_folder.h"
 #include "colmap_seapoint/io/outputs/replaceable_file.h"
 #include "colmap_seapoint/io/outputs/same_file.h"
+#include "colmap_seapoint/navigation/measured_positions.h"
 #include "colmap_seapoint/pictures/image_reader.h"
 #include "colmap_seapoint/pictures/read_rig.h"
 #include "colmap_seapoint/pipeline/earlier_outputs.h"
-#include "colmap_seapoint/pipeline/measured_positions.h"
 #include "colmap_seapoint/pipeline/output_paths.h"
 #include "colmap_seapoint/report/scale_report.h"
 

@@ -35,10 +35,10 @@ void HideInRect(const GrayImage* mask, const RectMap& map, int num_threads, Rect
   });
 }
 
-void RemoveHidden(const PairInput& input, const PairGeometry& geometry, const RectMap& map1,
-                  int num_threads, PartialSurface* surface) {
-  const GrayImage* const mask1 = &input.picture1->mask;
-  if (!HasMask(mask1) && !HasMask(input.mask2)) return;
+void RemoveHidden(const GrayImage* mask1, const GrayImage* mask2, const View& view2,
+                  const PairGeometry& geometry, const RectMap& map1, int num_threads,
+                  PartialSurface* surface) {
+  if (!HasMask(mask1) && !HasMask(mask2)) return;
   const SampleGrid& grid = surface->grid;
   const auto is_hidden = [&](int a, int b, double disparity) {
     const auto source = map1.Source(grid.PixelX(a), grid.PixelY(b));
@@ -46,10 +46,10 @@ void RemoveHidden(const PairInput& input, const PairGeometry& geometry, const Re
         IsHidden(mask1, static_cast<double>(source->x()), static_cast<double>(source->y()))) {
       return true;
     }
-    if (!HasMask(input.mask2)) return false;
+    if (!HasMask(mask2)) return false;
     const Eigen::Vector3d point = geometry.PointInWorld(grid.RectX(a), grid.RectY(b), disparity);
-    const auto pixel2 = input.view2.camera.ImgFromCam(input.view2.cam_from_world * point);
-    return pixel2 && IsHidden(input.mask2, pixel2->x(), pixel2->y());
+    const auto pixel2 = view2.camera.ImgFromCam(view2.cam_from_world * point);
+    return pixel2 && IsHidden(mask2, pixel2->x(), pixel2->y());
   };
   ParallelFor(num_threads, grid.height, [&](int64_t row) {
     const int b = static_cast<int>(row);

@@ -2,9 +2,9 @@
 // are COLMAP's, 0 where a picture shows what is not to be reconstructed: a diver, a frame, water).
 #pragma once
 
-#include "densify/match/plan_pair.h"
 #include "densify/match/rectification.h"
 #include "densify/match/surface_fit.h"
+#include "densify/match/view.h"
 
 namespace colmap_seapoint {
 
@@ -16,10 +16,11 @@ bool IsHidden(const GrayImage* mask, double x, double y);
 // rectified by.
 void HideInRect(const GrayImage* mask, const RectMap& map, int num_threads, RectPicture* picture);
 
-// Removes the samples that either mask hides: where picture 1 was sampled, and where their points
-// lie in picture 2. Costs nothing without masks, about 50 ns a sample with them. The same result
-// for any number of threads.
-void RemoveHidden(const PairInput& input, const PairGeometry& geometry, const RectMap& map1,
-                  int num_threads, PartialSurface* surface);
+// Removes the samples that either picture's mask hides: where picture 1 was sampled, and where
+// their points lie in picture 2. Costs nothing without masks, about 50 ns a sample with them. The
+// same result for any number of threads.
+void RemoveHidden(const GrayImage* mask1, const GrayImage* mask2, const View& view2,
+                  const PairGeometry& geometry, const RectMap& map1, int num_threads,
+                  PartialSurface* surface);
 
 }  // namespace colmap_seapoint

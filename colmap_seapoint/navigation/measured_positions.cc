@@ -1,4 +1,4 @@
-#include "colmap_seapoint/pipeline/measured_positions.h"
+#include "colmap_seapoint/navigation/measured_positions.h"
 
 #include <algorithm>
 #include <cstdio>
