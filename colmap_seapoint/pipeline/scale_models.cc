@@ -56,6 +56,10 @@ ScaledModel ScaleOnce(const ModelScalerOptions& scaler, const PictureRecords& re
   return RunStage<ScaledModel>(state, stage, [&]() -> StageOutput<ScaledModel> {
     RemoveOutputs(output);
     ScaledModel scaled = ScaleModel(scaler, records);
+    if (!scaled.refused.empty()) {
+      RemoveOutputs(output);
+      return {std::move(scaled), {}};
+    }
     return {std::move(scaled), FilesOfOurs(output)};
   });
 }
