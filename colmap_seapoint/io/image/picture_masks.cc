@@ -65,7 +65,7 @@ void PictureMasks::Check(const std::vector<std::string>& names, const std::strin
   const auto num_masks = std::count_if(names.begin(), names.end(), [&](const std::string& name) {
     return std::filesystem::exists(PathOf(name), ignored);
   });
-  if (num_masks == 0 && !names.empty()) {
+  if (num_masks == 0 && !names.empty() && !std::filesystem::is_empty(mask_path_)) {
     throw Error(mask_path_, "holds a mask of no picture",
                 "name each mask as its picture with .png behind, e.g. " + names.front() + ".png");
   }

@@ -19,8 +19,9 @@ class PictureMasks {
   // `mask_path`: "" = there are none.
   explicit PictureMasks(std::string mask_path) : mask_path_(std::move(mask_path)) {}
 
-  // To be called before hours of work. Throws Error when the folder is not there, or holds a mask
-  // of none of the pictures; says how many have one. `option` is the one that named the folder.
+  // To be called before hours of work. Throws Error when the folder is not there, or holds
+  // files, but a mask of none of the pictures; says how many have one. `option` is the one that
+  // named the folder.
   void Check(const std::vector<std::string>& names, const std::string& option) const;
 
   // Why the mask of a picture of that size cannot be used, by its header; "" when it can, or there
