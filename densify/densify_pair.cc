@@ -4,6 +4,7 @@
 
 #include "colmap_seapoint/base/timer.h"
 #include "densify/cloud/disparity_to_cloud.h"
+#include "densify/match/hidden_samples.h"
 #include "densify/match/match_surface.h"
 #include "densify/match/rectify_pair.h"
 
@@ -55,6 +56,8 @@ PairResult DensifyPair(const PairInput& input, const PartialDensificationOptions
   const Timer propagation_timer;
   MatchedSurface matched = MatchSurface(plan, rectified.picture1, rectified.picture2,
                                         rectified.gate, input.further, matching, num_threads);
+  RemoveHidden(&input.picture1->mask, input.mask2, input.view2, plan.geometry, rectified.map1,
+               num_threads, &matched.surface);
   const double propagation_seconds = propagation_timer.WallSeconds();
 
   PairResult result = Reproject(input, plan, rectified, std::move(matched), num_threads);

@@ -58,8 +58,9 @@ PairInput InputOf(const SequenceContext& context, const PairTask& task,
   input.view2 = context.track.ViewOf(task.second);
   input.picture1 = pictures.picture1.get();
   input.luma2 = &pictures.picture2->luma;
+  input.mask2 = &pictures.picture2->mask;
   for (const auto& [position, picture] : pictures.further) {
-    input.further.push_back({context.track.ViewOf(position), &picture->luma});
+    input.further.push_back({context.track.ViewOf(position), &picture->luma, &picture->mask});
   }
   input.seeds = task.seeds;
   input.known = task.overlap.known;

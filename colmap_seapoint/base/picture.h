@@ -18,10 +18,14 @@ struct Picture {
   GrayImage cb, cr;        // ceil(width / 2^shift_x) x ceil(height / 2^shift_y); empty: no colour
   int chroma_shift_x = 0;  // 0, 1, 2
   int chroma_shift_y = 0;  // 0, 1, 2
+  // Of luma's size, 0 where the picture shows what is not to be reconstructed; empty: nowhere.
+  GrayImage mask;
 
   bool Empty() const { return luma.Empty(); }
   bool HasColor() const { return !cb.Empty(); }
-  size_t NumBytes() const { return luma.data.size() + cb.data.size() + cr.data.size(); }
+  size_t NumBytes() const {
+    return luma.data.size() + cb.data.size() + cr.data.size() + mask.data.size();
+  }
 };
 
 // Returns 0.299 red + 0.587 green + 0.114 blue, in 2^15ths, rounded: the same as OpenCV's RGB2GRAY.

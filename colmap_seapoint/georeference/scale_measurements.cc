@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/median.h"
@@ -13,6 +14,7 @@
 #include "colmap_seapoint/io/files/positions_csv.h"
 #include "colmap_seapoint/io/files/run_report.h"
 #include "colmap_seapoint/io/files/scale_csv.h"
+#include "colmap_seapoint/io/navigation/nav_log.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -26,6 +28,8 @@ constexpr double kOriginStepDeg = 1e-5;
 // Cameras whose viewing directions add up to less than this share of their number look all round.
 constexpr double kMinMeanAxis = 0.5;
 constexpr char kPositionsOption[] = "--positions_path";
+constexpr char kNavOption[] = "--nav";
+constexpr char kNavTimesOption[] = "--nav_times";
 
 Eigen::Vector3d MedianOf(const std::map<std::string, Eigen::Vector3d>& positions) {
   Eigen::Vector3d median;
@@ -87,10 +91,11 @@ std::map<std::string, const PosedImage*> ImagesByName(const SparseModel& model) 
   return images;
 }
 
-void AddPositions(const SparseModel& model, const ScaleSources& sources,
-                  ScaleMeasurements* result) {
-  PicturePositions table = ReadPositionsCsv(sources.positions_path, kPositionsOption);
-  ToFrame(sources.crs, &table, &result->units);
+// Adds the positions of the model's pictures; returns the names of the others.
+std::vector<std::string> AddPositions(const SparseModel& model, MeasuredPositions positions,
+                                      ScaleMeasurements* result) {
+  PicturePositions& table = positions.table;
+  ToFrame(positions.crs, &table, &result->units);
   const auto images = ImagesByName(model);
   std::vector<std::string> unknown;
   for (const auto& [name, position] : table.positions) {
@@ -106,11 +111,33 @@ void AddPositions(const SparseModel& model, const ScaleSources& sources,
     result->problem.positions.push_back(measurement);
     result->position_names.push_back(name);
   }
-  WarnOfUnknown(sources.positions_path, unknown, "of its pictures are not in the model");
-  if (!result->position_names.empty()) return;
-  throw Error(sources.positions_path, "none of its pictures is in the model",
+  if (!result->position_names.empty()) return unknown;
+  throw Error(positions.from, "none of its pictures is in the model",
               "write the names as the model has them, e.g. " +
                   (model.images.empty() ? std::string("img1.jpg") : model.images[0].name));
+}
+
+void AddPositionTable(const SparseModel& model, const ScaleSources& sources,
+                      ScaleMeasurements* result) {
+  const std::string& path = sources.positions_path;
+  const auto unknown =
+      AddPositions(model, {ReadPositionsCsv(path, kPositionsOption), path, sources.crs}, result);
+  WarnOfUnknown(path, unknown, "of its pictures are not in the model");
+}
+
+// `of_table`: the pictures that a table names.
+void CheckNames(const std::string& path, const std::set<std::string>& of_table,
+                const std::vector<std::string>& names) {
+  std::vector<std::string> unknown;
+  const std::set<std::string> known(names.begin(), names.end());
+  for (const std::string& name : of_table) {
+    if (known.count(name) == 0) unknown.push_back(name);
+  }
+  if (unknown.size() == of_table.size() && !names.empty()) {
+    throw Error(path, "none of the pictures that it names is there, e.g. " + unknown.front(),
+                "write the names as they are in the folder, e.g. " + names.front());
+  }
+  WarnOfUnknown(path, unknown, "of its pictures are not there");
 }
 
 using Targets = std::map<std::string, TriangulatedTarget>;
@@ -285,20 +312,48 @@ Eigen::Vector3d MeanViewingDirection(const SparseModel& model) {
 void CheckScaleTables(const ScaleSources& sources) {
   if (!sources.scale_bars_path.empty()) ReadScaleBarsCsv(sources.scale_bars_path);
   if (!sources.targets_path.empty()) ReadTargetsCsv(sources.targets_path);
-  if (!sources.positions_path.empty()) {
+  if (!sources.nav.empty()) ReadNavLogs(sources.nav, kNavOption);
+  if (!sources.nav_times.empty()) ReadPictureTimes(sources.nav_times, kNavTimesOption);
+  if (!sources.crs.empty()) MapProjection check(sources.crs);
+  if (sources.HasPositionTable()) {
     PicturePositions table = ReadPositionsCsv(sources.positions_path, kPositionsOption);
     ModelUnits units;
     ToFrame(sources.crs, &table, &units);
   }
 }
 
+void CheckScaleNames(const ScaleSources& sources, const std::vector<std::string>& names) {
+  if (sources.HasPositionTable()) {
+    std::set<std::string> of_table;
+    for (const auto& [name, position] :
+         ReadPositionsCsv(sources.positions_path, kPositionsOption).positions) {
+      of_table.insert(name);
+    }
+    CheckNames(sources.positions_path, of_table, names);
+  }
+  if (!sources.targets_path.empty()) {
+    std::set<std::string> of_table;
+    for (const TargetMark& mark : ReadTargetsCsv(sources.targets_path)) of_table.insert(mark.image);
+    CheckNames(sources.targets_path, of_table, names);
+  }
+  if (!sources.nav_times.empty()) {
+    std::set<std::string> of_table;
+    for (const PictureTime& time : ReadPictureTimes(sources.nav_times, kNavTimesOption)) {
+      of_table.insert(time.image);
+    }
+    CheckNames(sources.nav_times, of_table, names);
+  }
+}
+
 ScaleMeasurements GatherMeasurements(const SparseModel& model, const ScaleSources& sources,
-                                     const StereoRig& rig, int seed, RunReport* report) {
+                                     const StereoRig& rig, int seed, RunReport* report,
+                                     const MeasuredPositions* measured) {
   ScaleMeasurements result;
   result.units.is_metric = true;
   result.problem.seed = seed;
   result.problem.down_in_model = MeanViewingDirection(model);
-  if (!sources.positions_path.empty()) AddPositions(model, sources, &result);
+  if (sources.HasPositionTable()) AddPositionTable(model, sources, &result);
+  if (measured != nullptr) AddPositions(model, *measured, &result);
   AddBars(model, sources, &result, report);
   AddRig(model, sources, rig, &result);
   if (!result.problem.positions.empty() || !result.problem.lengths.empty()) return result;

@@ -10,6 +10,7 @@
 #include "colmap_seapoint/georeference/estimate_similarity.h"
 #include "colmap_seapoint/georeference/scale_sources.h"
 #include "colmap_seapoint/io/files/model_units.h"
+#include "colmap_seapoint/io/files/positions_csv.h"
 #include "colmap_seapoint/io/files/run_report.h"
 
 namespace colmap_seapoint {
@@ -19,6 +20,13 @@ struct TargetSummary {
   std::string problem;  // empty: it has a place
   size_t num_marks = 0, num_used = 0;
   double rms_pixels = 0;  // of the used marks
+};
+
+// Positions that no table of the user's gives: from the pictures' EXIF, or from a log.
+struct MeasuredPositions {
+  PicturePositions table;
+  std::string from;  // "nav.csv": for messages
+  std::string crs;   // of the result; empty = east, north, up of the place
 };
 
 struct ScaleMeasurements {
@@ -31,12 +39,18 @@ struct ScaleMeasurements {
 // Reads all tables, so that a bad one throws its Error before hours of work, not after them.
 void CheckScaleTables(const ScaleSources& sources);
 
+// Throws Error when no picture that positions_path, targets_path or nav_times names is among
+// `names`; of some, a line says which. To be called before hours of work.
+void CheckScaleNames(const ScaleSources& sources, const std::vector<std::string>& names);
+
 // Reads the tables, triangulates the targets and finds the pictures. Pictures of the tables that
 // the model does not hold (they may be in other models) are named once, on stderr; bars that do not
 // have both ends in the model are left out by name. `rig` is by image_idx of `model`. Throws Error
 // for a bad table, a point:ID that is not there, a mark outside its picture, a rig without
-// simultaneous pictures, and when nothing of the sources is in the model.
+// simultaneous pictures, and when nothing of the sources is in the model. `measured`: positions
+// that take the place of a table's; nullptr = none.
 ScaleMeasurements GatherMeasurements(const SparseModel& model, const ScaleSources& sources,
-                                     const StereoRig& rig, int seed, RunReport* report);
+                                     const StereoRig& rig, int seed, RunReport* report,
+                                     const MeasuredPositions* measured = nullptr);
 
 }  // namespace colmap_seapoint

@@ -1,5 +1,10 @@
 #include "colmap_seapoint/georeference/scale_sources.h"
 
+#include <cmath>
+#include <limits>
+#include <locale>
+#include <sstream>
+
 namespace colmap_seapoint {
 
 void ScaleSources::Bind(OptionTable* table) {
@@ -11,10 +16,25 @@ void ScaleSources::Bind(OptionTable* table) {
              "table of the targets' marks, target,image,x,y (pixels; the first pixel's centre is "
              "0.5, 0.5), in 2 pictures each at least",
              "ours");
-  table->Add("positions_path", &positions_path,
-             "table of the cameras' positions, image,x,y,z (metres), image,lat,lon,alt or "
-             "image,lat,lon,depth (degrees, metres), with [,sigma] or [,sigma_xy,sigma_z] if known",
+  table->Add(
+      "positions_path", &positions_path,
+      "table of the cameras' positions, image,x,y,z (metres), image,lat,lon,alt or "
+      "image,lat,lon,depth (degrees, metres), with [,sigma] or [,sigma_xy,sigma_z] if known; "
+      "empty = GPS and depth of the pictures' EXIF, where nothing else says how large the "
+      "model is; none = not even those",
+      "ours");
+  table->Add("nav", &nav,
+             "log of the vehicle: a table with a header that names time (ISO 8601 or seconds), lat "
+             "and lon or x and y, and depth or altitude, among others; several logs of one dive "
+             "separated by commas. How far its clock is from the camera's is found from the track",
              "ours");
+  table->Add("nav_times", &nav_times,
+             "table of the pictures' times, image,time, for nav; empty = from their EXIF", "ours");
+  table->Add("nav_offset", &nav_offset,
+             "seconds that the log's clock is ahead of the camera's; auto = found from the track",
+             "ours");
+  table->Add("max_nav_offset", &max_nav_offset,
+             "seconds that the two clocks may differ, time zones apart", "ours", 0, 86400);
   table->Add("crs", &crs,
              "projected reference system of the result, e.g. EPSG:32755: latitude and longitude "
              "are converted, x,y,z are taken as of it; empty = east, north, up of the place",
@@ -30,7 +50,18 @@ void ScaleSources::Bind(OptionTable* table) {
 }
 
 bool ScaleSources::Any() const {
-  return !scale_bars_path.empty() || !positions_path.empty() || rig_spacing > 0;
+  return !scale_bars_path.empty() || HasPositionTable() || !nav.empty() || rig_spacing > 0;
+}
+
+std::optional<double> ScaleSources::NavOffset() const {
+  if (nav_offset == kAutoOffset) return std::nullopt;
+  std::istringstream text(nav_offset);
+  text.imbue(std::locale::classic());
+  double seconds = std::numeric_limits<double>::quiet_NaN();
+  if (!(text >> seconds) || !(text >> std::ws).eof()) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  return seconds;
 }
 
 std::string ScaleSources::Check() const {
@@ -38,7 +69,17 @@ std::string ScaleSources::Check() const {
     return "targets_path is '" + targets_path +
            "', it needs scale_bars_path: the known lengths between the targets";
   }
-  if (!crs.empty() && positions_path.empty()) {
+  if (!nav.empty() && HasPositionTable()) {
+    return "nav is '" + nav + "' and positions_path is '" + positions_path +
+           "': give one of them, both say where the cameras were";
+  }
+  if (nav.empty() && (!nav_times.empty() || nav_offset != kAutoOffset)) {
+    return "nav_times and nav_offset need nav: the log that they are for";
+  }
+  if (!std::isfinite(NavOffset().value_or(0))) {
+    return "nav_offset is '" + nav_offset + "', it must be auto or a number of seconds";
+  }
+  if (!crs.empty() && ((Any() && !HasPositionTable() && nav.empty()) || DeclinesPositions())) {
     return "crs is '" + crs + "', it needs positions_path: the positions that it is for";
   }
   return "";

@@ -11,6 +11,7 @@
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/image/image_file.h"
+#include "colmap_seapoint/io/image/picture_masks.h"
 #include "colmap_seapoint/lens/choose_lens.h"
 #include "colmap_seapoint/lens/ground_bend.h"
 #include "colmap_seapoint/lens/lens_doubt.h"
@@ -68,6 +69,12 @@ bool HoldsFirmly(const SparseModel& before, const SparseModel& after) {
 std::optional<SparseModel> MeasuredAgain(const SparseModel& model, const AdjustmentJob& job) {
   RemeasuringOptions options;
   options.num_threads = job.num_threads;
+  if (!job.mask_path.empty()) {
+    options.read_mask = [&, masks = PictureMasks(job.mask_path)](const PosedImage& image) {
+      const Camera& camera = model.cameras.at(image.camera_id);
+      return masks.ReadForResampling(image.name, camera.width, camera.height);
+    };
+  }
   const auto read = [&](const PosedImage& image) {
     return ReadGrayImage(job.image_path / image.name);
   };

@@ -19,6 +19,7 @@ namespace colmap_seapoint {
 struct AdjustmentJob {
   std::filesystem::path database_path;
   std::filesystem::path image_path;
+  std::string mask_path;           // COLMAP's masks (picture_masks.h); empty = none
   MapperOptions options;           // as the mapper had them
   std::filesystem::path log_path;  // without "_triangulation.log"
   bool must_succeed = false;       // the triangulation (retriangulate.h)

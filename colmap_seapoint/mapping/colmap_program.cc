@@ -1,6 +1,7 @@
 #include "colmap_seapoint/mapping/colmap_program.h"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/files/subprocess.h"
@@ -91,6 +92,20 @@ ColmapProgram FindColmap(const std::string& colmap, double timeout_seconds) {
   if (result.Succeeded() && program.HasMapperOption("database_path")) return program;
   throw Error(program.path.string(),
               "does not answer 'mapper -h' as COLMAP does (" + result.Text() + ")", kInstallRemedy);
+}
+
+std::string CameraModelProblem(const ColmapProgram& colmap, const CameraModelInfo& model) {
+  int major = 0, minor = 0;
+  if (std::sscanf(colmap.version.c_str(), "COLMAP %d.%d", &major, &minor) != 2) return "";
+  const std::pair<int, int> since = model.model >= CameraModel::kEucm             ? std::pair(4, 1)
+                                    : model.model >= CameraModel::kSimpleDivision ? std::pair(4, 0)
+                                    : model.model >= CameraModel::kRadTanThinPrismFisheye
+                                        ? std::pair(3, 11)
+                                        : std::pair(0, 0);
+  if (std::pair(major, minor) >= since) return "";
+  return "this COLMAP (" + std::to_string(major) + "." + std::to_string(minor) +
+         ") does not know the camera model " + model.name + ", which came with " +
+         std::to_string(since.first) + "." + std::to_string(since.second);
 }
 
 void AppendOptions(const MapperOptions& options, std::vector<std::string>* arguments) {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "colmap_seapoint/base/camera.h"
+
 namespace colmap_seapoint {
 
 using MapperOptions = std::map<std::string, std::string>;  // "Mapper.min_model_size" -> "3"
@@ -26,6 +28,10 @@ inline constexpr char kGlobalMapper[] = "global_mapper";
 // their names change between versions. Throws Error when it is missing or does not answer as COLMAP
 // does. Cost: two or three starts of the program, each within timeout_seconds.
 ColmapProgram FindColmap(const std::string& colmap, double timeout_seconds = 0);
+
+// Why this COLMAP cannot map pictures of a camera model: it is older than the model; "" when it
+// can, or does not say which version it is.
+std::string CameraModelProblem(const ColmapProgram& colmap, const CameraModelInfo& model);
 
 // Appends "--name" and "value" for every option, in the order of their names.
 void AppendOptions(const MapperOptions& options, std::vector<std::string>* arguments);

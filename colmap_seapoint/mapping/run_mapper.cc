@@ -210,6 +210,7 @@ class MapperRounds {
     AdjustmentJob job;
     job.database_path = trial.triangulation_path;
     job.image_path = job_.image_path;
+    job.mask_path = job_.mask_path;
     // The triangulator knows the mapper's options, and none of the global mapper's.
     job.options = trial.command == kMapper ? trial.options : job_.first_round;
     job.log_path = job_.log_folder / log;

@@ -25,6 +25,7 @@ enum class LensRule {
 struct MapperJob {
   std::filesystem::path database_path;
   std::filesystem::path image_path;
+  std::string mask_path;              // COLMAP's masks (picture_masks.h); empty = none
   std::filesystem::path output_path;  // the caller's own: emptied; holds 0/, 1/ ... afterwards
   std::filesystem::path log_folder;   // gets mapper_1_thinned.log, mapper_1.log ...
   // Where given, the global mapper is tried first; the first round proper is then left out when

@@ -179,7 +179,11 @@ std::vector<std::string> ListPictures(const std::filesystem::path& image_path,
     if (IsSafeImageName(name)) {
       names.push_back(name);
     } else {
-      LeaveOut(name, "its name could lead out of the folder; rename it", report);
+      LeaveOut(name,
+               "its name holds what no file of COLMAP's can (a backslash, a control character), or "
+               "leads "
+               "out of the folder; rename it",
+               report);
     }
   }
   return names;

@@ -25,10 +25,12 @@ std::string SizeProblem(const Camera& camera, int width, int height) {
 }  // namespace
 
 ModelPictures::ModelPictures(const SparseModel& model, const std::filesystem::path& image_path,
-                             ColmapDatabase* database, const SeaPointExtractionOptions& extraction,
+                             const PictureMasks& masks, ColmapDatabase* database,
+                             const SeaPointExtractionOptions& extraction,
                              const SeaPointMatchingOptions& matching)
     : model_(model),
       image_path_(image_path),
+      masks_(masks),
       database_(database),
       extraction_(extraction),
       matching_(matching),
@@ -66,7 +68,10 @@ std::filesystem::path ModelPictures::PathOf(int image_idx) const {
 std::string ModelPictures::Check(int image_idx) const {
   try {
     const ImageInfo info = ReadImageInfo(PathOf(image_idx));
-    return SizeProblem(model_.cameras.at(ImageAt(image_idx).camera_id), info.width, info.height);
+    const std::string problem =
+        SizeProblem(model_.cameras.at(ImageAt(image_idx).camera_id), info.width, info.height);
+    if (!problem.empty()) return problem;
+    return masks_.Problem(ImageAt(image_idx).name, info.width, info.height);
   } catch (const Error& error) {
     return error.Finding();
   }
@@ -91,9 +96,13 @@ Picture ModelPictures::ReadPicture(int image_idx) {
   Picture picture = file.Decode();
   const std::string problem = SizeProblem(model_.cameras.at(ImageAt(image_idx).camera_id),
                                           picture.luma.width, picture.luma.height);
-  if (problem.empty()) return picture;
-  throw Error(PathOf(image_idx).string(), problem,
-              "give the pictures that the model was made from, reduced or in full");
+  if (!problem.empty()) {
+    throw Error(PathOf(image_idx).string(), problem,
+                "give the pictures that the model was made from, reduced or in full");
+  }
+  picture.mask =
+      masks_.ReadForResampling(ImageAt(image_idx).name, picture.luma.width, picture.luma.height);
+  return picture;
 }
 
 std::optional<Features> ModelPictures::ReadSeaPoints(int image_idx) {
@@ -111,8 +120,8 @@ std::optional<Features> ModelPictures::ReadSeaPoints(int image_idx) {
   return features;
 }
 
-Features ModelPictures::FindSeaPoints(const GrayImage& picture) {
-  return ExtractFeatures(picture, GrayImage(), extraction_).features;
+Features ModelPictures::FindSeaPoints(const Picture& picture) {
+  return ExtractFeatures(picture.luma, picture.mask, extraction_).features;
 }
 
 bool ModelPictures::HasStoredSeaPoints(int image_idx) {

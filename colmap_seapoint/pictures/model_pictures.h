@@ -12,6 +12,7 @@
 #include "colmap_seapoint/base/sparse_model.h"
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/files/run_report.h"
+#include "colmap_seapoint/io/image/picture_masks.h"
 #include "densify/densify_sequence.h"
 #include "feature/extract_features.h"
 #include "feature/match_features.h"
@@ -21,15 +22,18 @@ namespace colmap_seapoint {
 // `model` and `database` (nullptr: there is none) outlive it. SeaPoints come from the database, by
 // image name, where it is given and has ours; those found in a reduced (or larger) picture are
 // scaled to the model's camera (paper 4, hybrid resolution), those of a picture of other
-// proportions not used. Matches are the verified ones of the database (the raw ones of a pair that
+// proportions not used. Pictures come with their masks; one whose mask cannot be used is as good as
+// unreadable. Matches are the verified ones of the database (the raw ones of a pair that
 // nothing has verified) where it has both pictures' SeaPoints and the pair.
 class ModelPictures : public PictureSource {
  public:
   ModelPictures(const SparseModel& model, const std::filesystem::path& image_path,
-                ColmapDatabase* database, const SeaPointExtractionOptions& extraction,
+                const PictureMasks& masks, ColmapDatabase* database,
+                const SeaPointExtractionOptions& extraction,
                 const SeaPointMatchingOptions& matching);
 
-  // "" when the picture's header is readable and of its camera's size; else the reason. Cheap.
+  // "" when the picture's header is readable and of its camera's size, and its mask's fits; else
+  // the reason. Cheap.
   std::string Check(int image_idx) const;
   // How many of the model's pictures have SeaPoints in the database.
   int NumInDatabase() const { return static_cast<int>(in_database_.size()); }
@@ -40,7 +44,7 @@ class ModelPictures : public PictureSource {
 
   Picture ReadPicture(int image_idx) override;
   std::optional<Features> ReadSeaPoints(int image_idx) override;
-  Features FindSeaPoints(const GrayImage& picture) override;
+  Features FindSeaPoints(const Picture& picture) override;
   // Damaged matches are as good as none; a warning says so.
   std::optional<FeatureMatches> ReadMatches(int image_idx1, int image_idx2) override;
   FeatureMatches Match(const Features& features1, const Features& features2) override;
@@ -58,6 +62,7 @@ class ModelPictures : public PictureSource {
 
   const SparseModel& model_;
   std::filesystem::path image_path_;
+  PictureMasks masks_;
   ColmapDatabase* database_;
   SeaPointExtractionOptions extraction_;
   SeaPointMatchingOptions matching_;

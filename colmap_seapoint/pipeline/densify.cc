@@ -14,6 +14,7 @@
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/files/model_units.h"
 #include "colmap_seapoint/io/files/run_report.h"
+#include "colmap_seapoint/io/image/picture_masks.h"
 #include "colmap_seapoint/io/outputs/output_folder.h"
 #include "colmap_seapoint/mapping/mapper_process.h"
 #include "colmap_seapoint/pictures/model_pictures.h"
@@ -63,6 +64,12 @@ SparseModel ReadModel(const PartialDensifierOptions& options,
             "them");
   }
   return model;
+}
+
+std::vector<std::string> NamesOf(const SparseModel& model) {
+  std::vector<std::string> names;
+  for (const PosedImage& image : model.images) names.push_back(image.name);
+  return names;
 }
 
 // Sees a folder of foreign pictures before hours of work.
@@ -174,6 +181,18 @@ void ClaimOutputs(const PartialDensifierOptions& options, OutputFolder* folder) 
   folder->Claim(names);
 }
 
+// Before anything else: a folder of other masks would be noticed in the cloud only.
+void CheckMasks(const PartialDensifierOptions& options,
+                const std::vector<std::filesystem::path>& models) {
+  if (options.mask_path.empty()) return;
+  std::vector<std::string> names;
+  for (const std::filesystem::path& path : models) {
+    const auto of_model = NamesOf(ReadSparseModel(path, ModelContent::kPosesAndPoints));
+    names.insert(names.end(), of_model.begin(), of_model.end());
+  }
+  PictureMasks(options.mask_path).Check(names, "--mask_path");
+}
+
 // The models that one run of the mapper left: each has its own frame and gets its own folder.
 CommandResult DensifySideBySide(const PartialDensifierOptions& options,
                                 const std::vector<std::filesystem::path>& models,
@@ -209,12 +228,10 @@ CommandResult DensifySideBySide(const PartialDensifierOptions& options,
 std::unique_ptr<MapWriter> StartMaps(const PartialDensifierOptions& options,
                                      const SparseModel& model, OutputFolder* folder) {
   if (!options.densification.write_maps) return nullptr;
-  std::vector<std::string> names;
-  for (const PosedImage& image : model.images) names.push_back(image.name);
-  folder->Claim(DenseMapNames(names));
-  auto maps = std::make_unique<MapWriter>(model, options.image_path, options.output_path,
-                                          options.densification,
-                                          EffectiveNumThreads(options.run.num_threads));
+  folder->Claim(DenseMapNames(NamesOf(model)));
+  auto maps = std::make_unique<MapWriter>(
+      model, options.image_path, PictureMasks(options.mask_path), options.output_path,
+      options.densification, EffectiveNumThreads(options.run.num_threads));
   maps->WriteModel(ReadModel(options, ModelContent::kTriangulated));
   return maps;
 }
@@ -230,6 +247,9 @@ void PartialDensifierOptions::Bind(OptionTable* table) {
                      "folder for fused.ply, fused.ply.vis, pairs.csv, units.json and run.json");
   table->Add("database_path", &database_path,
              "COLMAP database with SeaPoints and matches; empty = they are found again", "ours");
+  table->Add("mask_path", &mask_path,
+             "folder of masks <image name>.png, no point where a mask is 0; empty = none",
+             "COLMAP (there StereoFusion.mask_path)");
   table->Add("rig", &rig, kRigHelp, "paper 4");
   densification.Bind(table);
   extraction.Bind(table);
@@ -251,8 +271,8 @@ RunReport DensifyModel(const PartialDensifierOptions& options, ColmapDatabase* d
     auto timer = std::make_unique<StageTimer>(&report, "partial_densifier");
     const SparseModel model = ReadModel(options);
     report.images_in = static_cast<int64_t>(model.images.size());
-    ModelPictures pictures(model, options.image_path, database, options.extraction,
-                           options.matching);
+    ModelPictures pictures(model, options.image_path, PictureMasks(options.mask_path), database,
+                           options.extraction, options.matching);
     CheckPictures(options, model, pictures);
     if (database != nullptr && pictures.NumInDatabase() == 0) {
       LogWarning(options.database_path +
@@ -293,7 +313,10 @@ CommandResult RunPartialDensifier(const PartialDensifierOptions& options) {
   ColmapDatabase* const open = database ? &*database : nullptr;
   if (!IsSparseModel(options.input_path)) {
     const auto models = ListModels(options.input_path);
+    CheckMasks(options, models);
     if (!models.empty()) return DensifySideBySide(options, models, open);
+  } else {
+    CheckMasks(options, {options.input_path});
   }
   const RunReport report = DensifyModel(options, open);
   if (report.points > 0) return ResultOf(report);

@@ -19,6 +19,7 @@ struct PartialDensifierOptions {
   std::string input_path;     // COLMAP model, binary or text, or a folder of several
   std::string output_path;    // folder for the cloud and its reports
   std::string database_path;  // with SeaPoints and matches; empty = they are found again
+  std::string mask_path;      // folder of COLMAP's masks (picture_masks.h); empty = none
   std::string rig;            // "", "none" or "LEFT,RIGHT" (read_rig.h)
   PartialDensificationOptions densification;
   SeaPointExtractionOptions extraction;

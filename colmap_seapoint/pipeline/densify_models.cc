@@ -3,6 +3,7 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/run_report_json.h"
+#include "colmap_seapoint/io/image/picture_masks.h"
 #include "colmap_seapoint/pipeline/densify.h"
 #include "densify/densify_sequence.h"
 
@@ -16,6 +17,7 @@ PartialDensifierOptions DensifierOptions(const AutomaticReconstructorOptions& op
   densifier.input_path = model.path.string();
   densifier.output_path = (workspace.dense / model.name).string();
   densifier.database_path = workspace.database.string();
+  densifier.mask_path = options.reader.mask_path;
   densifier.rig = options.rig;
   densifier.densification = options.densification;
   densifier.extraction = options.extraction;
@@ -48,6 +50,7 @@ void DensifyModels(const AutomaticReconstructorOptions& options, const Workspace
     const Stage stage = {"dense_" + model.name, kDensificationVersion,
                          mapper_fingerprint + model.name + "," + options.rig + "," +
                              model.scaling_fingerprint +
+                             PictureMasks(densifier.mask_path).Fingerprint(model.pictures) +
                              OptionsFingerprint(OptionValues(options.densification)),
                          "The cloud in " + densifier.output_path + " is there already"};
     model.densification = DensifyOnce(densifier, stage, database, state);

@@ -13,6 +13,7 @@
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/image/image_file.h"
+#include "colmap_seapoint/io/image/picture_masks.h"
 #include "colmap_seapoint/io/outputs/run_lock.h"
 #include "colmap_seapoint/pairing/tilted_pairs.h"
 #include "colmap_seapoint/pipeline/output_paths.h"
@@ -46,6 +47,7 @@ class Extractor {
  public:
   Extractor(const FeatureExtractorOptions& options, std::set<std::string> second_chance_names)
       : options_(options),
+        masks_(options.reader.mask_path),
         second_chance_names_(std::move(second_chance_names)),
         hash_of_options_(OptionsFingerprint(OptionValues(options.extraction))) {}
 
@@ -59,7 +61,7 @@ class Extractor {
     try {
       const PictureFile file(picture_path);
       result.input = {name, file.Size(), file.Hash()};
-      const std::optional<PictureFile> mask = OpenMask(name);
+      const std::optional<PictureFile> mask = masks_.Open(name);
       if (mask) mask_hash = mask->Hash();
       result.fingerprint = Fingerprint(result.input, mask_hash, is_second_chance);
       result.is_unchanged =
@@ -68,7 +70,7 @@ class Extractor {
       // Its SeaPoints take less than decoding it does.
       const MemoryShare share(2 * file.BytesToDecode());
       const GrayImage picture = file.DecodeGray();
-      const GrayImage mask_picture = DecodeMask(name, mask, picture);
+      const GrayImage mask_picture = masks_.Decode(name, mask, picture.width, picture.height);
       result.features = is_second_chance
                             ? ExtractSecondChance(picture, mask_picture, options_.extraction)
                             : ExtractFeatures(picture, mask_picture, options_.extraction).features;
@@ -88,43 +90,8 @@ class Extractor {
            mask_hash + ":" + hash_of_options_ + (is_second_chance ? ":second chance" : "");
   }
 
-  std::filesystem::path MaskPath(const std::string& name) const {
-    return std::filesystem::path(options_.reader.mask_path) / (name + ".png");
-  }
-
-  // nullopt when there is none, as in COLMAP.
-  std::optional<PictureFile> OpenMask(const std::string& name) const {
-    if (options_.reader.mask_path.empty()) return std::nullopt;
-    std::error_code error;
-    if (!std::filesystem::exists(MaskPath(name), error)) return std::nullopt;
-    try {
-      return PictureFile(MaskPath(name));
-    } catch (const Error& failure) {
-      ThrowBadMask(name, failure);
-    }
-  }
-
-  // Empty when there is none.
-  GrayImage DecodeMask(const std::string& name, const std::optional<PictureFile>& file,
-                       const GrayImage& picture) const {
-    if (!file) return {};
-    GrayImage mask;
-    try {
-      mask = file->DecodeGray();
-    } catch (const Error& failure) {
-      ThrowBadMask(name, failure);
-    }
-    if (mask.width == picture.width && mask.height == picture.height) return mask;
-    throw Error(MaskPath(name).string(), "its mask is of another size than the picture",
-                "make both the same size");
-  }
-
-  [[noreturn]] void ThrowBadMask(const std::string& name, const Error& failure) const {
-    throw Error(MaskPath(name).string(), "its mask " + failure.Finding(),
-                "repair or remove the mask");
-  }
-
   const FeatureExtractorOptions& options_;
+  PictureMasks masks_;
   std::set<std::string> second_chance_names_;
   std::string hash_of_options_;
 };
@@ -134,10 +101,6 @@ void Validate(const FeatureExtractorOptions& options) {
   CheckRunReport(ReportPath(options));
   for (const std::string& problem : {options.reader.Check(), options.extraction.Check()}) {
     if (!problem.empty()) throw UsageError(problem);
-  }
-  const std::string& masks = options.reader.mask_path;
-  if (!masks.empty() && !std::filesystem::is_directory(masks)) {
-    throw Error(masks, "there is no such folder", "check --ImageReader.mask_path");
   }
 }
 
@@ -228,6 +191,7 @@ PictureSet ReadPictureSet(const FeatureExtractorOptions& options) {
   pictures.num_listed = report.images_in;
   pictures.left_out = report.left_out;
   if (pictures.readable.empty()) Finish(options, report);
+  PictureMasks(options.reader.mask_path).Check(names, "--ImageReader.mask_path");
   return pictures;
 }
 

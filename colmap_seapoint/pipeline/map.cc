@@ -135,6 +135,12 @@ class DatabaseForMapper {
 MappingPlan PlanMapping(const AutomaticReconstructorOptions& options, const Workspace& workspace) {
   MappingPlan plan;
   plan.colmap = FindColmap(options.colmap_path, options.colmap_timeout);
+  const std::string problem =
+      CameraModelProblem(plan.colmap, *FindCameraModel(options.reader.camera_model));
+  if (!problem.empty()) {
+    throw UsageError("ImageReader.camera_model: " + problem +
+                     "; choose another one, or give --colmap_path of a newer COLMAP");
+  }
   const int seed = options.run.random_seed;
   MapperJob& job = plan.job;
   job.lens = LensRuleOf(options);
@@ -144,6 +150,7 @@ MappingPlan PlanMapping(const AutomaticReconstructorOptions& options, const Work
   const std::string effort = adjusts ? options.quality : "archive";
   job.database_path = workspace.database;
   job.image_path = workspace.images;
+  job.mask_path = options.reader.mask_path;
   job.output_path = workspace.sparse.string() + ".tmp";
   plan.sparse = workspace.sparse;
   job.log_folder = workspace.report;

@@ -19,6 +19,7 @@
 #include "colmap_seapoint/io/image/image_file.h"
 #include "colmap_seapoint/mapping/second_chance.h"
 #include "colmap_seapoint/pairing/tilted_pairs.h"
+#include "colmap_seapoint/pictures/exif_positions.h"
 #include "colmap_seapoint/pipeline/densify_models.h"
 #include "colmap_seapoint/pipeline/extract.h"
 #include "colmap_seapoint/pipeline/map.h"
@@ -37,6 +38,12 @@ using Options = AutomaticReconstructorOptions;
 bool MatchesAllPairs(const Options& options, size_t num_pictures) {
   if (options.matcher != "auto") return options.matcher == "exhaustive";
   return num_pictures <= kMaxImagesForAllPairs;
+}
+
+std::vector<std::string> NamesOf(const PictureSet& pictures) {
+  std::vector<std::string> names;
+  for (const ReadablePicture& picture : pictures.readable) names.push_back(picture.name);
+  return names;
 }
 
 // The stage that begins the database: all that decides which rows it holds, the SeaPoints apart.
@@ -175,7 +182,7 @@ std::vector<ModelSummary> ReadModels(const std::vector<fs::path>& paths, RunRepo
 }
 
 // Into sparse_scaled/<k>: the mapper's own models stay as they are.
-void ScaleModels(const Options& options, const Workspace& workspace,
+void ScaleModels(const Options& options, const PictureSet& pictures, const Workspace& workspace,
                  const std::string& mapper_fingerprint, WorkspaceState* state,
                  std::vector<ModelSummary>* models, RunReport* report) {
   ModelScalerOptions scaler;
@@ -183,7 +190,8 @@ void ScaleModels(const Options& options, const Workspace& workspace,
   scaler.rig = options.rig;
   scaler.sources = options.scale;
   scaler.run = options.run;
-  AddPart(ScaleAllModels(scaler, workspace, mapper_fingerprint, state, models), report);
+  const PictureRecords records = RecordsFromExif(pictures.readable);
+  AddPart(ScaleAllModels(scaler, records, workspace, mapper_fingerprint, state, models), report);
   for (const ModelSummary& model : *models) {
     report->units = report->units.empty() || report->units == model.units_word
                         ? model.units_word
@@ -284,6 +292,7 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& giv
   report.options.insert(report.options.end(), options.mapper.begin(), options.mapper.end());
 
   const PictureSet pictures = ReadPictureSet(ExtractorOptions(options, workspace));
+  CheckScaleNames(options.scale, NamesOf(pictures));
   const Stage begin = DatabaseStage(options, pictures.readable);
   ColmapDatabase database =
       OpenWorkspaceDatabase(workspace.database, pictures.readable, options.reader, begin, &state);
@@ -293,7 +302,7 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& giv
   const Mapping mapping = MapPictures(plan, database, &state);
   report.stages.insert(report.stages.end(), mapping.seconds.begin(), mapping.seconds.end());
   std::vector<ModelSummary> models = ReadModels(mapping.models, &report);
-  ScaleModels(options, workspace, mapping.fingerprint, &state, &models, &report);
+  ScaleModels(options, pictures, workspace, mapping.fingerprint, &state, &models, &report);
   DensifyModels(options, workspace, mapping.fingerprint, &database, &state, &models, &report);
   return WriteReport(workspace, models, report);
 }

@@ -36,6 +36,7 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
              "places look so alike that it joins what does not belong together",
              "ours");
   table->Add("rig", &rig, kRigHelp, "paper 4");
+  table->Add("mask_path", &reader.mask_path, "the same as --ImageReader.mask_path", "COLMAP");
   scale.Bind(table);
   reader.Bind(table);
   extraction.Bind(table);

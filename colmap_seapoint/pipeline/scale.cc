@@ -11,6 +11,8 @@
 #include "colmap_seapoint/io/outputs/output_folder.h"
 #include "colmap_seapoint/io/outputs/replaceable_file.h"
 #include "colmap_seapoint/io/outputs/same_file.h"
+#include "colmap_seapoint/navigation/measured_positions.h"
+#include "colmap_seapoint/pictures/image_reader.h"
 #include "colmap_seapoint/pictures/read_rig.h"
 #include "colmap_seapoint/pipeline/earlier_outputs.h"
 #include "colmap_seapoint/pipeline/output_paths.h"
@@ -25,16 +27,21 @@ constexpr char kScaleFile[] = "scale.json";
 
 bool NamesFolders(const std::string& rig) { return rig.find(',') != std::string::npos; }
 
-void Validate(const ModelScalerOptions& options) {
+bool HasGps(const PictureRecords& records) {
+  return !records.gps.positions.positions.empty() || !records.gps.problem.empty();
+}
+
+void Validate(const ModelScalerOptions& options, const PictureRecords& records) {
   CheckOutputPaths(options);
   const ScaleSources& sources = options.sources;
   for (const std::string& problem : {sources.Check(), CheckRig(options.rig)}) {
     if (!problem.empty()) throw UsageError(problem);
   }
-  if (!sources.Any()) {
+  if (!sources.Any() && (sources.DeclinesPositions() ||
+                         (!HasGps(records) && !fs::is_directory(options.image_path)))) {
     throw UsageError(
-        "nothing says how large the model is: give --scale_bars_path, --positions_path or "
-        "--rig_spacing");
+        "nothing says how large the model is: give --scale_bars_path, --positions_path, --nav or "
+        "--rig_spacing, or the --image_path of pictures with GPS");
   }
   if (NamesFolders(options.rig) && !fs::is_directory(options.image_path)) {
     throw UsageError("rig is '" + options.rig + "', it needs image_path: the folder of its two");
@@ -64,8 +71,8 @@ void ClaimOutputs(const ModelScalerOptions& options, OutputFolder* folder) {
 void DescribeInputs(const ModelScalerOptions& options, RunReport* report) {
   const ScaleSources& sources = options.sources;
   for (const std::string& path : {sources.scale_bars_path, sources.targets_path,
-                                  sources.positions_path, options.cloud_path}) {
-    if (!path.empty()) report->inputs.push_back(DescribeInput(path, path));
+                                  sources.positions_path, options.cloud_path, sources.nav_times}) {
+    if (!path.empty() && path != kNoPositions) report->inputs.push_back(DescribeInput(path, path));
   }
 }
 
@@ -91,6 +98,77 @@ void WriteResult(const ModelScalerOptions& options, const ScaleMeasurements& mea
   WriteModelUnits(output, measurements.units);
 }
 
+struct Estimation {
+  std::string refused;              // as ScaledModel's
+  std::string source, source_line;  // where positions of no table are from, for both texts
+  ScaleMeasurements measurements;
+  SimilarityEstimate estimate;
+};
+
+std::string Refusal(const ScaleSources& sources, const std::string& problem) {
+  const std::string who =
+      sources.nav.empty() ? "the GPS in the pictures" : "the log " + sources.nav;
+  return who + " is not used: " + problem;
+}
+
+// What a log or EXIF says may be of no use: then the other sources count, or the model stays as it
+// is. What a table of the user's says must give a scale.
+Estimation Estimate(const ModelScalerOptions& options, const PictureRecords& records,
+                    const SparseModel& model, RunReport* report) {
+  const ScaleSources& sources = options.sources;
+  const PositionSource positions = FindPositions(sources, records, model);
+  Estimation found;
+  const bool is_usable = positions.is_there && positions.problem.empty();
+  const bool has_others =
+      !sources.scale_bars_path.empty() || sources.rig_spacing > 0 || sources.HasPositionTable();
+  if (!is_usable) {
+    found.refused = Refusal(sources, positions.is_there ? positions.problem : "there is none");
+    if (!sources.nav.empty()) LeaveOut(sources.nav, positions.problem, report);
+    if (!has_others) return found;
+    found.refused.clear();
+  } else {
+    LogInfo("Positions " + positions.text);
+    found.source = "positions: " + positions.text + "\n";
+    found.source_line = positions.text + "; ";
+  }
+  const StereoRig rig = sources.rig_spacing > 0
+                            ? ReadRig(options.rig, options.image_path, options.input_path, model)
+                            : StereoRig();
+  found.measurements = GatherMeasurements(model, sources, rig, options.run.random_seed, report,
+                                          is_usable ? &positions.measured : nullptr);
+  found.estimate = EstimateSimilarity(found.measurements.problem);
+  const std::string doubt = is_usable && !has_others ? Doubt(found.estimate) : "";
+  if (!doubt.empty()) {
+    found.refused = Refusal(sources, doubt);
+    if (!sources.nav.empty()) LeaveOut(sources.nav, doubt, report);
+    return found;
+  }
+  if (!found.estimate.problem.empty()) {
+    throw Error(options.input_path, "cannot be scaled: " + found.estimate.problem,
+                "give more positions, or a scale bar (--scale_bars_path)");
+  }
+  for (const std::string& warning : found.estimate.warnings) LogWarning(warning);
+  ModelUnits& units = found.measurements.units;
+  if (!found.estimate.has_frame) {
+    units = ModelUnits();
+    units.is_metric = true;
+  }
+  units.scale_sigma_relative = found.estimate.scale_sigma / found.estimate.metric_from_model.scale;
+  return found;
+}
+
+// Of the model's pictures.
+PictureRecords ReadRecords(const ModelScalerOptions& options) {
+  if (!fs::is_directory(options.image_path)) return {};
+  std::vector<std::string> names;
+  for (const PosedImage& image :
+       ReadSparseModel(options.input_path, ModelContent::kPosesAndPoints).images) {
+    names.push_back(image.name);
+  }
+  RunReport ignored;  // a picture that is not there tells nothing, and is not needed
+  return RecordsFromExif(ReadHeaders(options.image_path, names, options.run.num_threads, &ignored));
+}
+
 }  // namespace
 
 void ModelScalerOptions::Bind(OptionTable* table) {
@@ -101,8 +179,11 @@ void ModelScalerOptions::Bind(OptionTable* table) {
              "cloud in the model's frame (PLY), scaled into output_path; empty = none", "ours");
   sources.Bind(table);
   table->Add("rig", &rig, kRigHelp, "paper 4");
-  table->Add("image_path", &image_path, "folder of the pictures; needed by --rig LEFT,RIGHT only",
-             "COLMAP");
+  table->Add(
+      "image_path", &image_path,
+      "folder of the pictures; for --rig LEFT,RIGHT, for the times of --nav, and for their GPS "
+      "where no other source is given",
+      "COLMAP");
   table->Add("report_path", &report_path,
              "CSV to write, one row a measurement with its residual; empty = none", "ours");
   run.Bind(table);
@@ -110,48 +191,41 @@ void ModelScalerOptions::Bind(OptionTable* table) {
   table->MarkOutput("report_path");
 }
 
-ScaledModel ScaleModel(const ModelScalerOptions& options) {
-  Validate(options);
+ScaledModel ScaleModel(const ModelScalerOptions& options, const PictureRecords& records) {
+  Validate(options, records);
   CheckScaleTables(options.sources);
   OutputFolder folder(options.output_path, "--output_path");
   ClaimOutputs(options, &folder);
   ScaledModel scaled;
-  RunReport& report = scaled.report;
-  report = StartReport("model_scaler", options, options.run);
+  scaled.report = StartReport("model_scaler", options, options.run);
   {
-    StageTimer timer(&report, "model_scaler");
+    StageTimer timer(&scaled.report, "model_scaler");
     SparseModel model = ReadSparseModel(options.input_path);
-    report.images_in = report.images_used = static_cast<int64_t>(model.images.size());
-    DescribeInputs(options, &report);
-    const StereoRig rig = options.sources.rig_spacing > 0
-                              ? ReadRig(options.rig, options.image_path, options.input_path, model)
-                              : StereoRig();
-    ScaleMeasurements measurements =
-        GatherMeasurements(model, options.sources, rig, options.run.random_seed, &report);
-    const SimilarityEstimate estimate = EstimateSimilarity(measurements.problem);
-    if (!estimate.problem.empty()) {
-      throw Error(options.input_path, "cannot be scaled: " + estimate.problem,
-                  "give more positions, or a scale bar (--scale_bars_path)");
+    scaled.report.images_in = scaled.report.images_used = static_cast<int64_t>(model.images.size());
+    DescribeInputs(options, &scaled.report);
+    Estimation found = Estimate(options, records, model, &scaled.report);
+    if (!found.refused.empty()) {
+      scaled.refused = found.refused;
+      return scaled;
     }
-    for (const std::string& warning : estimate.warnings) LogWarning(warning);
-    if (!estimate.has_frame) {
-      measurements.units = ModelUnits();
-      measurements.units.is_metric = true;
-    }
-    measurements.units.scale_sigma_relative =
-        estimate.scale_sigma / estimate.metric_from_model.scale;
-    WriteResult(options, measurements, estimate, &folder, &model);
-    scaled.text = ScaleText(measurements, estimate);
-    scaled.line = ScaleLine(estimate);
-    report.units = UnitsWord(measurements.units);
+    WriteResult(options, found.measurements, found.estimate, &folder, &model);
+    scaled.text = found.source + ScaleText(found.measurements, found.estimate);
+    scaled.line = found.source_line + ScaleLine(found.measurements, found.estimate);
+    scaled.report.units = UnitsWord(found.measurements.units);
   }
-  WriteRunReport(fs::path(options.output_path) / "run.json", report);
+  WriteRunReport(fs::path(options.output_path) / "run.json", scaled.report);
   LogInfo("The model in metres is in " + options.output_path);
   return scaled;
 }
 
 CommandResult RunModelScaler(const ModelScalerOptions& options) {
-  const ScaledModel scaled = ScaleModel(options);
+  PictureRecords records;
+  if (!options.sources.Any() || !options.sources.nav.empty()) records = ReadRecords(options);
+  const ScaledModel scaled = ScaleModel(options, records);
+  if (!scaled.refused.empty()) {
+    throw Error(options.input_path, "cannot be scaled: " + scaled.refused,
+                "give --positions_path, or a scale bar (--scale_bars_path)");
+  }
   return {scaled.report.left_out.empty(), scaled.text};
 }
 

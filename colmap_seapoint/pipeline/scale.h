@@ -8,6 +8,7 @@
 #include "colmap_seapoint/base/run_options.h"
 #include "colmap_seapoint/georeference/scale_measurements.h"
 #include "colmap_seapoint/io/files/run_report.h"
+#include "colmap_seapoint/pictures/exif_positions.h"
 
 namespace colmap_seapoint {
 
@@ -15,7 +16,7 @@ struct ModelScalerOptions {
   std::string input_path;   // COLMAP model, binary or text
   std::string output_path;  // folder for the scaled model and what tells how it was scaled
   std::string cloud_path;   // PLY in the model's frame, scaled too; empty = none
-  std::string image_path;   // folder of the pictures; for rig LEFT,RIGHT only
+  std::string image_path;   // folder of the pictures; for rig LEFT,RIGHT, and for their EXIF
   std::string rig;          // "", "none" or "LEFT,RIGHT" (read_rig.h)
   std::string report_path;  // CSV, a row a measurement with its residual; empty = none
   ScaleSources sources;
@@ -28,12 +29,16 @@ struct ScaledModel {
   RunReport report;
   std::string text;  // for stdout
   std::string line;  // for a summary
+  // Why the model stays as it is; empty: it is scaled. Only what the pictures' EXIF or a log says
+  // may be refused; then nothing is written.
+  std::string refused;
 };
 
 // Writes the model (in the form it had, binary or text, with its rigs and frames), units.json,
 // scale.json and run.json into output_path, and the cloud under its own name. The input is only
-// read. Throws Error when the measurements do not give a scale.
-ScaledModel ScaleModel(const ModelScalerOptions& options);
+// read. `records` of the pictures: for a log's times, and for GPS where no other source is given.
+// Throws Error when the measurements of the user's do not give a scale.
+ScaledModel ScaleModel(const ModelScalerOptions& options, const PictureRecords& records = {});
 
 CommandResult RunModelScaler(const ModelScalerOptions& options);
 

@@ -56,6 +56,25 @@ Image<uint8_t> FirstChannel(const ColorImage& picture) {
   return gray;
 }
 
+// Clears what the mask (of `from`; empty: none) hides, in maps of the undistorted camera `to`.
+void HideMasked(const GrayImage& mask, const Camera& from, const Camera& to, ViewMaps* maps) {
+  if (mask.Empty()) return;
+  for (int y = 0; y < maps->depth.height; ++y) {
+    for (int x = 0; x < maps->depth.width; ++x) {
+      if (!(maps->depth.At(x, y) > 0)) continue;
+      // A map's value at (x, y) is that of the ray through the place (x, y) (view_maps.h).
+      const auto ray = to.CamFromImg({x, y});
+      const auto pixel = ray ? from.ImgFromCam(ray->homogeneous()) : std::nullopt;
+      if (!pixel || !from.InImage(*pixel)) continue;
+      const int column = std::min(mask.width - 1, static_cast<int>(pixel->x()));
+      const int row = std::min(mask.height - 1, static_cast<int>(pixel->y()));
+      if (mask.At(column, row) != 0) continue;
+      maps->depth.At(x, y) = 0;
+      for (int c = 0; c < 3; ++c) maps->normal.At(x, y, c) = 0;
+    }
+  }
+}
+
 }  // namespace
 
 void CheckMapFolders(const fs::path& image_path, const fs::path& input_path,
@@ -75,11 +94,12 @@ void CheckMapFolders(const fs::path& image_path, const fs::path& input_path,
 }
 
 MapWriter::MapWriter(const SparseModel& model, const fs::path& image_path,
-                     const fs::path& output_path, const PartialDensificationOptions& options,
-                     int num_threads)
+                     const PictureMasks& masks, const fs::path& output_path,
+                     const PartialDensificationOptions& options, int num_threads)
     : model_(model),
       image_path_(image_path),
       output_path_(output_path),
+      masks_(masks),
       options_(options),
       num_threads_(num_threads) {
   for (const auto& [camera_id, camera] : model.cameras) {
@@ -169,11 +189,13 @@ void MapWriter::WritePicture(size_t image_idx, const ColorImage& picture) const 
 // Why the picture is left out, or "".
 std::string MapWriter::WriteView(size_t image_idx, const CloudRanges& cloud) const {
   const PosedImage& image = model_.images[image_idx];
+  GrayImage mask;
   {
     const Camera& camera = model_.cameras.at(image.camera_id);
     ColorImage picture;
     try {
       picture = ReadColorImage(image_path_ / image.name);
+      mask = masks_.ReadForResampling(image.name, camera.width, camera.height);
     } catch (const Error& error) {
       return error.Finding();
     }
@@ -182,7 +204,8 @@ std::string MapWriter::WriteView(size_t image_idx, const CloudRanges& cloud) con
     }
     WritePicture(image_idx, picture);
   }
-  const ViewMaps maps = DrawMaps(image_idx, cloud);
+  ViewMaps maps = DrawMaps(image_idx, cloud);
+  HideMasked(mask, model_.cameras.at(image.camera_id), undistorted_.at(image.camera_id), &maps);
   WriteDenseMap(DepthMapPath(output_path_, image.name), maps.depth);
   WriteDenseMap(NormalMapPath(output_path_, image.name), maps.normal);
   return "";

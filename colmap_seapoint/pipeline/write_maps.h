@@ -12,6 +12,7 @@
 #include "colmap_seapoint/base/sparse_model.h"
 #include "colmap_seapoint/io/cloud/cloud_ranges.h"
 #include "colmap_seapoint/io/files/run_report.h"
+#include "colmap_seapoint/io/image/picture_masks.h"
 #include "densify/densify_sequence.h"
 #include "densify/maps/view_maps.h"
 
@@ -29,10 +30,11 @@ void CheckMapFolders(const std::filesystem::path& image_path,
 // them appears whole.
 class MapWriter {
  public:
-  // `model` as densified, in the order of its image ids, outlives this.
+  // `model` as densified, in the order of its image ids, outlives this. Maps show nothing where a
+  // picture's mask is 0: COLMAP's fusion would take the colour of what is hidden there.
   MapWriter(const SparseModel& model, const std::filesystem::path& image_path,
-            const std::filesystem::path& output_path, const PartialDensificationOptions& options,
-            int num_threads);
+            const PictureMasks& masks, const std::filesystem::path& output_path,
+            const PartialDensificationOptions& options, int num_threads);
 
   // sparse/. `model` as read with ModelContent::kTriangulated, as the pictures see it.
   void WriteModel(const SparseModel& model) const;
@@ -67,6 +69,7 @@ class MapWriter {
 
   const SparseModel& model_;
   std::filesystem::path image_path_, output_path_;
+  PictureMasks masks_;
   PartialDensificationOptions options_;
   int num_threads_;
   std::map<uint32_t, Camera> undistorted_;  // by camera_id

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "colmap_seapoint/base/parallel.h"
+#include "colmap_seapoint/base/picture.h"
 #include "colmap_seapoint/remeasuring/apply_measurements.h"
 #include "colmap_seapoint/remeasuring/surface_patch.h"
 #include "colmap_seapoint/remeasuring/surface_planes.h"
@@ -20,6 +21,22 @@ struct KeptPatch {
   Eigen::Vector2f aside;  // from the middle of the patch to the point, pixels
 };
 static_assert(sizeof(std::optional<KeptPatch>) <= 400, "one a point of the whole survey");
+
+// Whether a mask (empty: none) hides any of a patch, laid around a pixel by a warp.
+bool HidesPatch(const GrayImage& mask, const Eigen::Vector2d& pixel, const Eigen::Matrix2d& warp) {
+  if (mask.Empty()) return false;
+  const Eigen::Array2d reach = ReferencePatch::kReach * warp.cwiseAbs().rowwise().sum().array();
+  const Eigen::Array2d last(mask.width - 1, mask.height - 1);
+  const Eigen::Array2d first = pixel.array() - reach, end = pixel.array() + reach;
+  if (!(first <= last).all() || !(end >= 0).all()) return false;  // not in the picture, or NaN
+  const Eigen::Array2i low = first.max(0).cast<int>(), high = end.min(last).cast<int>();
+  for (int y = low.y(); y <= high.y(); ++y) {
+    for (int x = low.x(); x <= high.x(); ++x) {
+      if (mask.At(x, y) == 0) return true;
+    }
+  }
+  return false;
+}
 
 class Remeasuring {
  public:
@@ -47,11 +64,13 @@ class Remeasuring {
 
  private:
   // Empty when the picture has not its camera's size.
-  GrayImage Read(size_t image_idx) {
+  Picture Read(size_t image_idx) {
     const PosedImage& image = model_.images[image_idx];
     const Camera& camera = model_.cameras.at(image.camera_id);
-    GrayImage picture = read_(image);
-    if (picture.width == camera.width && picture.height == camera.height) return picture;
+    Picture picture;
+    picture.luma = read_(image);
+    if (options_.read_mask) picture.mask = options_.read_mask(image);
+    if (picture.luma.width == camera.width && picture.luma.height == camera.height) return picture;
     is_of_other_size_[image_idx] = 1;
     return {};
   }
@@ -74,7 +93,7 @@ class Remeasuring {
     const auto image_idx = static_cast<size_t>(i);
     const std::vector<SeenPlane> planes = PlanesOf(image_idx);
     if (planes.empty()) return;
-    const GrayImage picture = Read(image_idx);
+    const Picture picture = Read(image_idx);
     if (picture.Empty()) return;
     auto plane = planes.begin();
     for (const Observation& observation : tracks_.observations[image_idx]) {
@@ -85,13 +104,15 @@ class Remeasuring {
   }
 
   std::optional<KeptPatch> MakePatch(const PosedImage& image, const Observation& observation,
-                                     const SeenPlane& plane, const GrayImage& picture) const {
+                                     const SeenPlane& plane, const Picture& picture) const {
     const Eigen::Vector2d& pixel = image.points2D[observation.point2D_idx];
     const Eigen::Vector2d middle = pixel.array().floor() + 0.5;
     const auto surface =
         PatchOnPlane(model_.cameras.at(image.camera_id), image.cam_from_world, plane, middle);
-    const auto gray = CutPatch(picture, static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
+    const auto gray =
+        CutPatch(picture.luma, static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
     if (!surface || !gray) return std::nullopt;
+    if (HidesPatch(picture.mask, middle, Eigen::Matrix2d::Identity())) return std::nullopt;
     return KeptPatch{*surface, *gray, (pixel - middle).cast<float>()};
   }
 
@@ -108,7 +129,7 @@ class Remeasuring {
         !is_of_other_size_[image_idx] &&
         std::any_of(observations.begin(), observations.end(),
                     [&](const Observation& observation) { return IsToBeMeasured(observation); });
-    const GrayImage picture = is_needed ? Read(image_idx) : GrayImage();
+    const Picture picture = is_needed ? Read(image_idx) : Picture();
     ImageMeasurements measured(image.points2D.size());
     for (const Observation& observation : observations) {
       Measurement& measurement = measured[observation.point2D_idx];
@@ -124,12 +145,14 @@ class Remeasuring {
   }
 
   Measurement Measure(const PosedImage& image, const Observation& observation,
-                      const GrayImage& picture) const {
+                      const Picture& picture) const {
     const KeptPatch& patch = *patches_[static_cast<size_t>(observation.point_idx)];
     const auto predicted =
         PredictPlace(model_.cameras.at(image.camera_id), image.cam_from_world, patch.surface);
-    if (!predicted) return {};
-    const PatchMatch match = MatchPatch(patch.gray, picture, *predicted);
+    if (!predicted || HidesPatch(picture.mask, predicted->pixel, predicted->other_from_reference)) {
+      return {};
+    }
+    const PatchMatch match = MatchPatch(patch.gray, picture.luma, *predicted);
     Measurement measurement;
     measurement.outcome = OutcomeOf(match.status);
     if (measurement.outcome != MeasurementOutcome::kMoved) return measurement;

@@ -17,6 +17,10 @@
 
 namespace colmap_seapoint {
 
+// Reads a picture of the model, grey; called for each at most twice, from several threads. A size
+// that is not its camera's leaves the picture's observations as they are.
+using GrayPictureReader = std::function<GrayImage(const PosedImage&)>;
+
 struct RemeasuringOptions {
   // An observation farther from where its point is found shows something else, and is taken out.
   double max_move = 4;  // pixels
@@ -25,13 +29,17 @@ struct RemeasuringOptions {
   // 1,000 pictures the camera centres were 13.8 mm off with 0.15, and 3.4 with 0.06.
   double max_sigma = 0.06;
   int num_threads = -1;  // -1 = all
+  // A picture's mask, 0 where it shows what is not to be used; empty where it has none. Null: there
+  // are no masks. What a mask hides is not measured in, and observations near it stay as they are.
+  GrayPictureReader read_mask;
 };
 
 // What became of the observations of triangulated points.
 struct RemeasuringCounts {
   size_t references = 0;  // stay as they are: what the others are measured against
   size_t moved = 0;
-  size_t unmeasured = 0;  // stay as they are: at a picture's border, or in one of another size
+  // Stay as they are: at a picture's or mask's border, or in a picture of another size.
+  size_t unmeasured = 0;
   // Taken out: see PatchMatchStatus for the first three.
   size_t unlike = 0;
   size_t diverged = 0;
@@ -47,10 +55,6 @@ struct Remeasurement {
   RemeasuringCounts counts;
   std::vector<std::string> of_other_size;  // names of pictures, in the order of the model
 };
-
-// Reads a picture of the model, grey; called for each at most twice, from several threads. A size
-// that is not its camera's leaves the picture's observations as they are.
-using GrayPictureReader = std::function<GrayImage(const PosedImage&)>;
 
 // The model with its observations moved or taken out, and without the points that have fewer than
 // two left; poses, points' places and lenses stay, as does what has no point. The same bytes for

@@ -13,6 +13,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr size_t kMaxRows = 20;
+constexpr size_t kMaxNamedOutliers = 3;
 
 template <typename... Values>
 std::string Format(const char* format, Values... values) {
@@ -58,6 +59,24 @@ void AddLengthRows(const ScaleMeasurements& measurements, const SimilarityEstima
   }
 }
 
+// " (not b.jpg: 52 m off)", the farthest three; "" without outliers.
+std::string OutlierText(const ScaleMeasurements& measurements, const SimilarityEstimate& estimate) {
+  std::vector<size_t> outliers;
+  for (size_t i = 0; i < estimate.position_used.size(); ++i) {
+    if (!estimate.position_used[i]) outliers.push_back(i);
+  }
+  const auto distance = [&](size_t i) { return estimate.position_residuals[i].norm(); };
+  std::stable_sort(outliers.begin(), outliers.end(),
+                   [&](size_t a, size_t b) { return distance(a) > distance(b); });
+  std::string text;
+  for (size_t k = 0; k < std::min(outliers.size(), kMaxNamedOutliers); ++k) {
+    text += (k == 0 ? " (not " : ", ") + measurements.position_names[outliers[k]] +
+            Format(": %.3g m off", distance(outliers[k]));
+  }
+  if (text.empty()) return text;
+  return text + (outliers.size() > kMaxNamedOutliers ? ", ...)" : ")");
+}
+
 Json VectorJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 Json SimilarityJson(const Similarity3d& similarity) {
@@ -78,12 +97,16 @@ std::string Quoted(const std::string& name) {
 
 }  // namespace
 
-std::string ScaleLine(const SimilarityEstimate& estimate) {
+std::string ScaleLine(const ScaleMeasurements& measurements, const SimilarityEstimate& estimate) {
   std::string text =
       Format("scale %.6g +- %.2g", estimate.metric_from_model.scale, estimate.scale_sigma);
   if (estimate.has_frame) {
     text += Format("; positions %zu of %zu, rms %.3f m", Count(estimate.position_used),
                    estimate.position_used.size(), estimate.position_rms);
+    text += OutlierText(measurements, estimate);
+    if (estimate.is_levelled) {
+      text += "; they lie on a line, the turn about it is from where the cameras look";
+    }
   }
   if (!estimate.length_used.empty()) {
     text += Format("; lengths %zu of %zu, rms %.4f m", Count(estimate.length_used),

@@ -13,8 +13,9 @@ namespace colmap_seapoint {
 // (of more than 20 positions, the 20 largest), and which of them are outliers.
 std::string ScaleText(const ScaleMeasurements& measurements, const SimilarityEstimate& estimate);
 
-// One line for a summary: "scale 1.234 +- 0.001; positions 18 of 20, rms 0.05 m".
-std::string ScaleLine(const SimilarityEstimate& estimate);
+// One line for a summary: "scale 1.234 +- 0.001; positions 18 of 20, rms 0.05 m (not b.jpg: 52 m
+// off)".
+std::string ScaleLine(const ScaleMeasurements& measurements, const SimilarityEstimate& estimate);
 
 // scale.json: the similarity, and all residuals. Atomic.
 void WriteScaleJson(const std::filesystem::path& path, const ScaleMeasurements& measurements,

@@ -9,6 +9,7 @@
 
 #include "colmap_seapoint/base/parallel.h"
 #include "densify/kernels/patch_kernels.h"
+#include "densify/match/hidden_samples.h"
 
 namespace colmap_seapoint {
 
@@ -106,6 +107,7 @@ class FurtherPicture {
       : geometry_(geometry),
         camera_(further.view.camera),
         luma_(*further.luma),
+        mask_(further.mask),
         cam_from_rect_(further.view.cam_from_world.rotation.toRotationMatrix() *
                        geometry.world_from_rect),
         origin_(further.view.cam_from_world * geometry.center1) {}
@@ -187,7 +189,19 @@ class FurtherPicture {
     return {predicted + move, std::hypot(likeness.deviation, kLeastNoise / pixels_a_unit), false};
   }
 
-  // False where the patch, placed there, reaches beyond the picture.
+  // Whether the mask hides the middle of the patch, placed there, or one of its corners.
+  bool TouchesMask(const Eigen::Vector2d& at, const Eigen::Matrix2d& axes) const {
+    if (mask_ == nullptr || mask_->Empty()) return false;
+    for (const double down : {-1.0, 0.0, 1.0}) {
+      for (const double across : {-1.0, 0.0, 1.0}) {
+        const Eigen::Vector2d place = at + axes * (patch::kBefore * Eigen::Vector2d(across, down));
+        if (IsHidden(mask_, place.x(), place.y())) return true;
+      }
+    }
+    return false;
+  }
+
+  // False where the patch, placed there, reaches beyond the picture or into what its mask hides.
   bool SumAt(const Eigen::Vector2d& at, const Eigen::Matrix2d& axes, const patch::Template& of,
              patch::Sums* sums) const {
     // To the corner of a pixel more than the patch has, and to the centre of the picture's second
@@ -198,6 +212,7 @@ class FurtherPicture {
           at.y() < luma_.height - reach.y())) {
       return false;
     }
+    if (TouchesMask(at, axes)) return false;
     const auto fixed = [](double value) { return static_cast<int32_t>(std::lround(value)); };
     const Eigen::Matrix2d scaled = 65536 * axes;
     patch::SumOther(
@@ -211,6 +226,7 @@ class FurtherPicture {
   const PairGeometry& geometry_;
   const Camera& camera_;
   const GrayImage& luma_;
+  const GrayImage* const mask_;
   const Eigen::Matrix3d cam_from_rect_;
   const Eigen::Vector3d origin_;  // of the rect frame, in the camera's
 };

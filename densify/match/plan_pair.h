@@ -20,6 +20,7 @@ struct PairInput {
   View view1, view2;
   const Picture* picture1 = nullptr;
   const GrayImage* luma2 = nullptr;
+  const GrayImage* mask2 = nullptr;  // as Picture::mask; none: empty or nullptr
   std::vector<FurtherView> further;  // others that show the same; maybe none
   std::vector<PixelPair> seeds;
   KnownCells known;  // of picture 1; in kComplete it only tells which part of the result is new

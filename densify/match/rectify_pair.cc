@@ -2,17 +2,24 @@
 
 #include <utility>
 
+#include "densify/match/hidden_samples.h"
+
 namespace colmap_seapoint {
 
 namespace {
 
-std::vector<int> CellsOfNodes(const SampleGrid& nodes, const RectMap& map1, const CellGrid& cells) {
+// What a mask hides is no place of the picture.
+std::vector<int> CellsOfNodes(const SampleGrid& nodes, const RectMap& map1, const CellGrid& cells,
+                              const GrayImage& mask) {
   std::vector<int> cell_of_node(nodes.Size(), -1);
   for (int b = 0; b < nodes.height; ++b) {
     for (int a = 0; a < nodes.width; ++a) {
       const int x = nodes.PixelX(a), y = nodes.PixelY(b);
       const auto source = map1.Source(x, y);
-      if (!source) continue;
+      if (!source ||
+          IsHidden(&mask, static_cast<double>(source->x()), static_cast<double>(source->y()))) {
+        continue;
+      }
       cell_of_node[nodes.IndexAt(x, y)] = static_cast<int>(cells.IndexOf(source->x(), source->y()));
     }
   }
@@ -87,12 +94,14 @@ RectifiedPair RectifyPair(const PairInput& input, const PairPlan& plan, int num_
   RectMap map1(plan.geometry, false, plan.window1, num_threads);
   const RectMap map2(plan.geometry, true, plan.window2, num_threads);
   const SampleGrid nodes(plan.window1, plan.node_step);
-  std::vector<int> cell_of_node = CellsOfNodes(nodes, map1, plan.avoided.grid);
+  std::vector<int> cell_of_node =
+      CellsOfNodes(nodes, map1, plan.avoided.grid, input.picture1->mask);
   Gate gate = MakeGate(plan, cell_of_node);
   const BlockMask blocks1 = WantedBlocks1(plan, gate);
   const BlockMask blocks2 = WantedBlocks2(plan, blocks1);
   RectPicture picture1 = map1.Rectify(input.picture1->luma, blocks1, num_threads);
   RectPicture picture2 = map2.Rectify(*input.luma2, blocks2, num_threads);
+  HideInRect(input.mask2, map2, num_threads, &picture2);
   return {std::move(map1), std::move(gate), std::move(cell_of_node), std::move(picture1),
           std::move(picture2)};
 }

@@ -19,6 +19,7 @@ struct View {
 struct FurtherView {
   View view;
   const GrayImage* luma = nullptr;
+  const GrayImage* mask = nullptr;  // as Picture::mask; none: empty or nullptr
 };
 
 // A pixel of picture 1 and the pixel of picture 2 that shows the same place.

@@ -57,7 +57,7 @@ Features PictureCache::ObtainSeaPoints(int image_idx) {
     return {};
   }
   const auto picture = Get(image_idx);
-  return picture ? source_->FindSeaPoints(picture->luma) : Features();
+  return picture ? source_->FindSeaPoints(*picture) : Features();
 }
 
 std::shared_ptr<const Features> PictureCache::GetSeaPoints(int image_idx) {

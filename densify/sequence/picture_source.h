@@ -20,7 +20,8 @@ class PictureSource {
   virtual Picture ReadPicture(int image_idx) = 0;
   // nullopt: none are stored. Throws Error for damaged ones.
   virtual std::optional<Features> ReadSeaPoints(int image_idx) = 0;
-  virtual Features FindSeaPoints(const GrayImage& picture) = 0;
+  // None where the picture's mask is 0.
+  virtual Features FindSeaPoints(const Picture& picture) = 0;
   // Indices into the points of ReadSeaPoints. nullopt: none are stored, or either picture's
   // SeaPoints are not.
   virtual std::optional<FeatureMatches> ReadMatches(int image_idx1, int image_idx2) = 0;

@@ -35,8 +35,8 @@ class PictureFolder : public cs::PictureSource {
     return cs::PictureOf(rgb);
   }
   std::optional<cs::Features> ReadSeaPoints(int) override { return std::nullopt; }
-  cs::Features FindSeaPoints(const cs::GrayImage& picture) override {
-    return cs::ExtractFeatures(picture, cs::GrayImage(), extraction_).features;
+  cs::Features FindSeaPoints(const cs::Picture& picture) override {
+    return cs::ExtractFeatures(picture.luma, picture.mask, extraction_).features;
   }
   std::optional<cs::FeatureMatches> ReadMatches(int, int) override { return std::nullopt; }
   cs::FeatureMatches Match(const cs::Features& a, const cs::Features& b) override {

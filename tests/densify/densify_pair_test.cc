@@ -188,6 +188,54 @@ TEST(DensifyPairTest, ColorsAreThoseOfTheSurface) {
   EXPECT_LT(mean, 4);
 }
 
+// A band across the middle of either picture, and of a further one.
+GrayImage BandMask(const Camera& camera) {
+  GrayImage mask(camera.width, camera.height, 1, 255);
+  for (int y = camera.height / 3; y < camera.height / 2; ++y) {
+    std::fill(mask.Row(y), mask.Row(y) + mask.width, uint8_t{0});
+  }
+  return mask;
+}
+
+int NumHidden(const PartialCloud& cloud, const Viewpoint& view, const GrayImage& mask) {
+  int num_hidden = 0;
+  for (const DensePoint& point : cloud.points) {
+    const auto pixel = view.camera.ImgFromCam(view.cam_from_world * point.xyz.cast<double>());
+    if (!pixel || !view.camera.InImage(*pixel)) continue;
+    const int x = std::min(mask.width - 1, static_cast<int>(pixel->x()));
+    const int y = std::min(mask.height - 1, static_cast<int>(pixel->y()));
+    num_hidden += mask.At(x, y) == 0;
+  }
+  return num_hidden;
+}
+
+TEST(DensifyPairTest, NoPointWhereEitherPictureIsMasked) {
+  for (const int masked : {1, 2, 3}) {  // bit 0: picture 1, bit 1: picture 2
+    PairScene scene = SceneOf(FlatWorld(kDepth));
+    const GrayImage mask = BandMask(scene.view1.camera);
+    const PartialDensificationOptions options;
+    const PairResult all = DensifyPair(scene.Input(options), options, 2);
+    if (masked & 1) scene.picture1.mask = mask;
+    PairInput input = scene.Input(options);
+    if (masked & 2) input.mask2 = &mask;
+    const PairResult result = DensifyPair(input, options, 2);
+    const PairResult alone = DensifyPair(input, options, 1);
+    for (const int picture : {1, 2}) {
+      const Viewpoint& view = picture == 1 ? scene.view1 : scene.view2;
+      EXPECT_GT(NumHidden(all.cloud, view, mask), 10000);
+      // A point is a float, and may lie a hair beyond the rim of its pixel: the masks that come
+      // from files are a pixel larger (picture_masks.h).
+      if (masked & picture) {
+        EXPECT_LT(NumHidden(result.cloud, view, mask), 30) << masked;
+      }
+    }
+    // What is not masked is there as before.
+    EXPECT_GT(result.cloud.points.size(), 0.6 * static_cast<double>(all.cloud.points.size()));
+    EXPECT_GE(MeasureAccuracy(scene, result.cloud, scene.Gsd(kDepth)).two_gsd, 0.999);
+    EXPECT_EQ(alone.cloud.points.size(), result.cloud.points.size());
+  }
+}
+
 TEST(DensifyPairTest, SamplesEveryStepPixels) {
   size_t num_points[5] = {};
   for (const int step : {1, 2, 4}) {

@@ -100,10 +100,10 @@ std::optional<Features> TestSurvey::ReadSeaPoints(int image_idx) {
   return features_[static_cast<size_t>(image_idx)];
 }
 
-Features TestSurvey::FindSeaPoints(const GrayImage& picture) {
+Features TestSurvey::FindSeaPoints(const Picture& picture) {
   ++num_found;
   for (size_t i = 0; i < pictures_.size(); ++i) {
-    if (LumaOf(pictures_[i]).data == picture.data) return features_[i];
+    if (LumaOf(pictures_[i]).data == picture.luma.data) return features_[i];
   }
   ADD_FAILURE() << "no picture of the survey";
   return {};

@@ -35,7 +35,7 @@ class TestSurvey : public PictureSource {
   Picture ReadPicture(int image_idx) override;
   std::optional<Features> ReadSeaPoints(int image_idx) override;
   // Knows the picture by its pixels.
-  Features FindSeaPoints(const GrayImage& picture) override;
+  Features FindSeaPoints(const Picture& picture) override;
   std::optional<FeatureMatches> ReadMatches(int image_idx1, int image_idx2) override;
   FeatureMatches Match(const Features& features1, const Features& features2) override;
 

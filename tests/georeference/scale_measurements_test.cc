@@ -63,6 +63,21 @@ class Measurements : public testing::Test {
   RunReport report_;
 };
 
+TEST_F(Measurements, NamesAreCheckedAgainstThePictures) {
+  const std::vector<std::string> names = {"img1.jpg", "img2.jpg"};
+  sources_.positions_path = Table("positions.csv", "image,x,y,z\nIMG1.JPG,1,2,3\n");
+  EXPECT_ERROR(CheckScaleNames(sources_, names), "e.g. IMG1.JPG; write the names");
+  sources_.positions_path = Table("positions.csv", "image,x,y,z\nimg1.jpg,1,2,3\nb.jpg,1,2,3\n");
+  testing::internal::CaptureStderr();
+  CheckScaleNames(sources_, names);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("are not there: b.jpg"), std::string::npos);
+  sources_.positions_path = kNoPositions;
+  CheckScaleNames(sources_, names);
+  sources_.scale_bars_path = Table("bars.csv", "name1,name2,length_m\na,b,1\n");
+  sources_.targets_path = Table("targets.csv", "target,image,x,y\na,other.jpg,1,2\n");
+  EXPECT_ERROR(CheckScaleNames(sources_, names), "targets.csv: none of the pictures");
+}
+
 TEST_F(Measurements, PositionsOfTheModelsPictures) {
   sources_.positions_path =
       Table("positions.csv",

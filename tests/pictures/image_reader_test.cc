@@ -68,6 +68,15 @@ TEST_F(ImageReaderTest, ListsTheGivenPicturesOnce) {
   EXPECT_EQ(report_.images_in, 2);
 }
 
+TEST_F(ImageReaderTest, ANewlineInANameLeavesThePictureOut) {
+  for (const char* name : {"a.png", "b\nc.png", "d\\e.png"}) AddPicture(name);
+  EXPECT_EQ(ListPictures(dir_.Path(), "", &report_), Names{"a.png"});
+  EXPECT_EQ(report_.images_in, 3);
+  ASSERT_EQ(report_.left_out.size(), 2u);
+  EXPECT_EQ(report_.left_out[0].name, "b\nc.png");
+  EXPECT_NE(report_.left_out[0].reason.find("control character"), std::string::npos);
+}
+
 TEST_F(ImageReaderTest, FaultsOfFolderAndList) {
   EXPECT_ERROR(ListPictures(dir_ / "none", "", &report_), "--image_path");
   EXPECT_ERROR(ListPictures(dir_.Path(), "", &report_), dir_.Path().string());

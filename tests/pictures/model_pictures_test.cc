@@ -43,7 +43,7 @@ class ModelPicturesTest : public testing::Test {
 
   ModelPictures Open() {
     database_.emplace(path_, ColmapDatabase::Mode::kReadOnly);
-    return ModelPictures(model_, dir_.Path(), &*database_, {}, {});
+    return ModelPictures(model_, dir_.Path(), PictureMasks(""), &*database_, {}, {});
   }
 
   TempDir dir_;
@@ -92,7 +92,7 @@ TEST_F(ModelPicturesTest, SeaPointsOfTheDatabaseOrNone) {
   ExpectSameFeatures(pictures.ReadSeaPoints(1), MakeFeatures(9, ids_["b"]));
   EXPECT_EQ(pictures.ReadSeaPoints(4), std::nullopt);
   EXPECT_EQ(pictures.NumInDatabase(), 4);
-  ModelPictures without(model_, dir_.Path(), nullptr, {}, {});
+  ModelPictures without(model_, dir_.Path(), PictureMasks(""), nullptr, {}, {});
   EXPECT_EQ(without.ReadSeaPoints(1), std::nullopt);
   EXPECT_EQ(without.ReadMatches(0, 1), std::nullopt);
 }

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -67,6 +69,50 @@ TEST_F(DensifyModelTest, WritesCloudTableUnitsAndReport) {
   const auto json = nlohmann::json::parse(ReadBytes(folder_ / "out/run.json"));
   EXPECT_EQ(json["points"], report.points);
   EXPECT_EQ(json["pairs"], report.pairs);
+}
+
+TEST_F(DensifyModelTest, NoPointLiesInAMask) {
+  const SparseModel model = StripModel(kNumPictures);
+  const Camera& camera = model.cameras.begin()->second;
+  // What hangs in view of the camera, in the same place of every picture.
+  GrayImage mask(camera.width, camera.height, 1, 255);
+  for (int y = mask.height / 3; y < mask.height; ++y) {
+    std::fill(mask.Row(y) + mask.width / 4, mask.Row(y) + mask.width / 2, uint8_t{0});
+  }
+  fs::create_directories(folder_ / "masks");
+  for (const PosedImage& image : model.images) {
+    WriteImage(folder_ / "masks" / (image.name + ".png"), mask);
+  }
+  // The two pictures that fused.ply.vis names for each point.
+  const auto num_hidden = [&](const fs::path& cloud_path) {
+    const std::string vis = ReadBytes(cloud_path.string() + ".vis");
+    const auto cloud = ReadCloud(cloud_path);
+    size_t num = 0;
+    for (size_t i = 0; i < cloud.size(); ++i) {
+      for (size_t k = 0; k < 2; ++k) {
+        uint32_t image_idx = 0;
+        std::memcpy(&image_idx, vis.data() + 8 + 12 * i + 4 + 4 * k, 4);
+        const auto pixel = camera.ImgFromCam(model.images.at(image_idx).cam_from_world *
+                                             cloud[i].xyz.cast<double>());
+        num += pixel && camera.InImage(*pixel) &&
+               mask.At(static_cast<int>(pixel->x()), static_cast<int>(pixel->y())) == 0;
+      }
+    }
+    return num;
+  };
+  DensifyModel(Options("all"), nullptr);
+  EXPECT_GT(num_hidden(folder_ / "all/fused.ply"), 500u);
+  PartialDensifierOptions options = Options();
+  options.mask_path = (folder_ / "masks").string();
+  const RunReport report = DensifyModel(options, nullptr);
+  EXPECT_EQ(num_hidden(folder_ / "out/fused.ply"), 0u);
+  EXPECT_GT(report.points, 2000);
+  // A mask of other proportions leaves its picture out, and says so.
+  WriteImage(folder_ / "masks/img2.png.png", GrayImage(10, 90, 1, 255));
+  options.output_path = (folder_ / "again").string();
+  const RunReport again = DensifyModel(options, nullptr);
+  EXPECT_EQ(NamesOf(again.left_out), Names{"img2.png"});
+  EXPECT_NE(again.left_out.at(0).reason.find("mask"), std::string::npos);
 }
 
 TEST_F(DensifyModelTest, PointsLieOnTheGround) {

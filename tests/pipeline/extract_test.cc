@@ -238,7 +238,7 @@ TEST_F(Extract, BadMasksLeaveTheirPicturesOut) {
   EXPECT_EQ(report.images_used, 1);
   ASSERT_EQ(NamesOf(report.left_out), (Names{"img1.png", "img2.png"}));
   EXPECT_EQ(report.left_out[0].reason.rfind("its mask ", 0), 0u) << report.left_out[0].reason;
-  EXPECT_EQ(report.left_out[1].reason, "its mask is of another size than the picture");
+  EXPECT_EQ(report.left_out[1].reason.rfind("its mask is of another size than the picture", 0), 0u);
   // A mask that covers all.
   WriteImage(folder_ / "masks/img1.png.png", GrayImage(kStripWidth, kStripHeight, 1, 0));
   fs::remove(folder_ / "masks/img2.png.png");

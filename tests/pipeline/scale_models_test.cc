@@ -45,9 +45,23 @@ class ScaleModelsTest : public StripSurvey {
   }
 
   RunReport Scale(const ModelScalerOptions& scaler, std::vector<ModelSummary>* models,
-                  const std::string& mapper_fingerprint = "mapper") const {
+                  const std::string& mapper_fingerprint = "mapper",
+                  const PictureRecords& records = {}) const {
     WorkspaceState state(Space().root);
-    return ScaleAllModels(scaler, Space(), mapper_fingerprint, &state, models);
+    return ScaleAllModels(scaler, records, Space(), mapper_fingerprint, &state, models);
+  }
+
+  // As EXIF tells them: the pictures of model a lie `metres` apart to the east, and each `scatter`
+  // metres off to the north or south in turn.
+  static PictureRecords Gps(double metres, double scatter = 0) {
+    PictureRecords records;
+    records.gps.positions.is_geographic = true;
+    records.gps.heights = "heights from the GPS altitude";
+    for (int i = 1; i <= kNumPictures; ++i) {
+      records.gps.positions.positions["a" + std::to_string(i) + ".png"] = {
+          43 + (i % 2 == 0 ? scatter : -scatter) / 111'000, 5 + i * metres / 81'400, 3};
+    }
+    return records;
   }
 
   // Between the places of the first two pictures.
@@ -66,6 +80,55 @@ class ScaleModelsTest : public StripSurvey {
            fs::file_time_type();
   }
 };
+
+TEST_F(ScaleModelsTest, GpsOfThePicturesCountsWhereNothingElseIsGiven) {
+  std::vector<ModelSummary> models = WriteModels("ab");
+  const RunReport report = Scale({}, &models, "mapper", Gps(2));
+  EXPECT_TRUE(report.left_out.empty());
+  EXPECT_NEAR(Spacing(0), 2, 0.01);
+  EXPECT_EQ(models[0].units_word, "metres");
+  EXPECT_NE(models[0].units.find("EPSG:32631"), std::string::npos) << models[0].units;
+  EXPECT_NE(models[0].scaling.find("from the GPS in the pictures"), std::string::npos);
+  // The other model's pictures have none: it stays as it is, and says why.
+  EXPECT_EQ(models[1].units_word, "arbitrary");
+  EXPECT_NE(models[1].scaling.find("only 0 pictures"), std::string::npos) << models[1].scaling;
+  EXPECT_EQ(models[1].path, Space().sparse / "1");
+  // Again: taken as it is. Declined: gone.
+  Mark(0);
+  Scale({}, &models, "mapper", Gps(2));
+  EXPECT_TRUE(IsMarked(0));
+  ModelScalerOptions declined;
+  declined.sources.positions_path = kNoPositions;
+  models = WriteModels("ab");
+  Scale(declined, &models, "mapper", Gps(2));
+  EXPECT_EQ(models[0].units_word, "arbitrary");
+  EXPECT_FALSE(fs::exists(Space().scaled));
+}
+
+TEST_F(ScaleModelsTest, GpsThatScattersTooMuchIsRefusedAndTheRunGoesOn) {
+  std::vector<ModelSummary> models = WriteModels("a");
+  const RunReport report = Scale({}, &models, "mapper", Gps(2, 30));
+  EXPECT_EQ(models[0].units_word, "arbitrary");
+  EXPECT_NE(models[0].scaling.find("the GPS in the pictures is not used"), std::string::npos)
+      << models[0].scaling;
+  EXPECT_TRUE(report.left_out.empty());
+}
+
+TEST_F(ScaleModelsTest, ALogOfAnotherDayIsLeftOutAndTheRunGoesOn) {
+  std::vector<ModelSummary> models = WriteModels("a");
+  ModelScalerOptions scaler;
+  scaler.sources.nav = Write("log.csv",
+                             "time,x,y,depth\n2024-05-01T12:00:00Z,0,0,1\n"
+                             "2024-05-01T12:01:00Z,9,9,1\n");
+  PictureRecords records;
+  for (int i = 1; i <= kNumPictures; ++i) {
+    records.times.push_back({"a" + std::to_string(i) + ".png", {1714900000.0 + i, true}});
+  }
+  const RunReport report = Scale(scaler, &models, "mapper", records);
+  ASSERT_EQ(report.left_out.size(), 1u);
+  EXPECT_NE(report.left_out[0].reason.find("of another time"), std::string::npos);
+  EXPECT_EQ(models[0].units_word, "arbitrary");
+}
 
 TEST_F(ScaleModelsTest, WithoutSourcesNothingHappens) {
   std::vector<ModelSummary> models = WriteModels("ab");

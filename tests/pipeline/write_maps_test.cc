@@ -105,7 +105,7 @@ class MapWriterTest : public StripSurvey {
 
   RunReport Write(const std::vector<PartialCloud>& parts,
                   const std::vector<LeftOutPicture>& left_out = {}, int num_threads = 1) const {
-    MapWriter maps(model_, Images(), Output(), options_, num_threads);
+    MapWriter maps(model_, Images(), PictureMasks(""), Output(), options_, num_threads);
     WriteCloud(parts, &maps);
     RunReport report;
     maps.WriteMaps(left_out, &report);
@@ -211,7 +211,7 @@ TEST_F(MapWriterTest, ALensIsTakenOutOfPicturesAndModel) {
   GrayImage gray(kStripWidth, kStripHeight, 1, 100);
   for (int x = 0; x < kStripWidth; ++x) gray.At(x, 150) = 200;
   WriteImage(Images() / "img1.png", gray);
-  const MapWriter maps(model_, Images(), Output(), options_, 1);
+  const MapWriter maps(model_, Images(), PictureMasks(""), Output(), options_, 1);
   maps.WriteModel(model_);
   const SparseModel undistorted = ReadSparseModel(Output() / "sparse");
   const Camera& pinhole = undistorted.cameras.at(1);

@@ -213,6 +213,36 @@ TEST(RemeasureObservations, LeavesWhatIsOfAnotherSize) {
   }
 }
 
+TEST(RemeasureObservations, LeavesWhatAMaskHides) {
+  const SparseModel& before = TheWorld().Model();
+  RemeasuringOptions options;
+  options.read_mask = [](const PosedImage& image) {
+    if (image.image_id != 2) return GrayImage();
+    const GrayImage picture = ReadPicture(image);
+    GrayImage mask(picture.width, picture.height, 1, 255);
+    for (int y = 0; y < mask.height; ++y) {
+      std::fill(mask.Row(y), mask.Row(y) + mask.width / 2, uint8_t{0});
+    }
+    return mask;
+  };
+  const Remeasurement all = Remeasure(before);
+  const Remeasurement masked = RemeasureObservations(options, before, ReadPicture);
+  ExpectConsistent(masked.model);
+  EXPECT_TRUE(masked.unreadable.empty());
+  EXPECT_GT(masked.counts.unmeasured, all.counts.unmeasured);
+  const double middle = TheWorld().Model().cameras.begin()->second.width / 2.0;
+  const PosedImage& image = masked.model.images[1];
+  size_t num_moved_left = 0, num_moved_right = 0;
+  for (size_t i = 0; i < image.points2D.size(); ++i) {
+    const double x = before.images[1].points2D[i].x();
+    const bool is_moved = image.points2D[i] != before.images[1].points2D[i];
+    num_moved_left += is_moved && x < middle - 4;
+    num_moved_right += is_moved && x > middle + 20;
+  }
+  EXPECT_EQ(num_moved_left, 0u);
+  EXPECT_GT(num_moved_right, 0u);
+}
+
 TEST(RemeasureObservations, ReadsEachPictureTwiceAtMost) {
   std::mutex mutex;
   std::map<std::string, int> num_reads;

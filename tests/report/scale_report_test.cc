@@ -42,11 +42,13 @@ class ScaleReportTest : public testing::Test {
 };
 
 TEST_F(ScaleReportTest, OneLine) {
-  EXPECT_EQ(ScaleLine(estimate_),
-            "scale 2.5 +- 0.005; positions 1 of 2, rms 0.050 m; lengths 1 of 1, rms 0.0125 m");
+  EXPECT_EQ(
+      ScaleLine(measurements_, estimate_),
+      "scale 2.5 +- 0.005; positions 1 of 2, rms 0.050 m (not b, \"c\".jpg: 5 m off); lengths 1 "
+      "of 1, rms 0.0125 m");
   estimate_.has_frame = false;
   estimate_.length_used.clear();
-  EXPECT_EQ(ScaleLine(estimate_), "scale 2.5 +- 0.005");
+  EXPECT_EQ(ScaleLine(measurements_, estimate_), "scale 2.5 +- 0.005");
 }
 
 TEST_F(ScaleReportTest, TextForAPerson) {

@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <exiv2/exiv2.hpp>
+#include <locale>
 #include <mutex>
 #include <new>
+#include <sstream>
 
 #include "colmap_seapoint/io/image/image_codecs.h"
 
@@ -79,21 +81,72 @@ std::optional<GeoPosition> Gps(const Exiv2::ExifData& exif) {
   return gps;
 }
 
-ExifInfo InfoOf(const Exiv2::ExifData& exif) {
+// What Exiv2 tells of a file.
+struct Metadata {
+  Exiv2::ExifData exif;
+  Exiv2::XmpData xmp;
+};
+
+// The value of the property of that name, whatever its namespace: makers have their own. "+39.80",
+// "12.5 m" and "25/2" are numbers.
+std::optional<double> XmpNumber(const Exiv2::XmpData& xmp, const std::string& name) {
+  for (const Exiv2::Xmpdatum& datum : xmp) {
+    if (datum.tagName() != name) continue;
+    std::istringstream text(datum.toString());
+    text.imbue(std::locale::classic());
+    double value = 0, divisor = 1;
+    char slash = 0;
+    if (!(text >> value)) return std::nullopt;
+    if (text >> slash && slash == '/' && text >> divisor && divisor != 0) value /= divisor;
+    return std::isfinite(value) ? std::optional(value) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+CaptureHeights Heights(const Metadata& metadata) {
+  CaptureHeights heights;
+  heights.depth = Number(metadata.exif, "Exif.Photo.0x9403");  // WaterDepth
+  for (const char* name : {"WaterDepth", "Depth", "depth"}) {
+    if (!heights.depth) heights.depth = XmpNumber(metadata.xmp, name);
+  }
+  heights.altitude = Number(metadata.exif, "Exif.GPSInfo.GPSAltitude");
+  if (heights.altitude && Number(metadata.exif, "Exif.GPSInfo.GPSAltitudeRef").value_or(0) == 1) {
+    heights.altitude = -*heights.altitude;
+  }
+  if (!heights.altitude) heights.altitude = XmpNumber(metadata.xmp, "AbsoluteAltitude");
+  heights.above_start = XmpNumber(metadata.xmp, "RelativeAltitude");
+  return heights;
+}
+
+// "2016:06:23 16:31:59.25".
+std::string Taken(const Exiv2::ExifData& exif) {
+  const std::string time = Text(exif, "Exif.Photo.DateTimeOriginal");
+  const std::string fraction = Text(exif, "Exif.Photo.SubSecTimeOriginal");
+  if (time.empty() || fraction.empty() ||
+      fraction.find_first_not_of("0123456789") != std::string::npos) {
+    return time;
+  }
+  return time + "." + fraction;
+}
+
+ExifInfo InfoOf(const Metadata& metadata) {
+  const Exiv2::ExifData& exif = metadata.exif;
   ExifInfo info;
   info.camera = CameraOf(exif);
   const double orientation = Number(exif, "Exif.Image.Orientation").value_or(1);
   if (orientation >= 1 && orientation <= 8) info.orientation = static_cast<int>(orientation);
   info.gps = Gps(exif);
+  info.heights = Heights(metadata);
+  info.taken = Taken(exif);
   return info;
 }
 
 // nullopt for what Exiv2 cannot read.
-std::optional<Exiv2::ExifData> TryToRead(const std::filesystem::path& path) {
+std::optional<Metadata> TryToRead(const std::filesystem::path& path) {
   try {
     const auto image = Exiv2::ImageFactory::open(path.string());
     image->readMetadata();
-    return image->exifData();
+    return Metadata{image->exifData(), image->xmpData()};
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception&) {  // Exiv2's own errors among them
@@ -113,14 +166,14 @@ ExifInfo ReadExif(const std::filesystem::path& path) {
   }();
   static_cast<void>(is_set_up);
 
-  auto exif = TryToRead(path);
-  if (!exif) {
+  auto metadata = TryToRead(path);
+  if (!metadata) {
     // A disk that fails looks to Exiv2 like damaged EXIF: it is read here, where both are told
     // apart. If it can be read by now, so may the EXIF.
     ReadAll(OpenImageFile(path));
-    exif = TryToRead(path);
+    metadata = TryToRead(path);
   }
-  return InfoOf(exif.value_or(Exiv2::ExifData()));
+  return InfoOf(metadata.value_or(Metadata()));
 }
 
 }  // namespace colmap_seapoint

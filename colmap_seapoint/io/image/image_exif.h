@@ -6,6 +6,8 @@
 
 #include "colmap_seapoint/base/geodesy.h"
 #include "colmap_seapoint/io/image/exif_camera.h"
+#include "colmap_seapoint/io/image/image_codecs.h"
+#include "colmap_seapoint/io/image/image_file.h"
 
 namespace colmap_seapoint {
 
@@ -13,6 +15,8 @@ struct ExifInfo {
   ExifCamera camera;
   int orientation = 1;
   std::optional<GeoPosition> gps;
+  CaptureHeights heights;
+  std::string taken;
 };
 
 // Pictures without EXIF, or with EXIF that cannot be read, give the defaults. Never prints; may be

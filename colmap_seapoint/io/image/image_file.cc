@@ -54,10 +54,6 @@ std::vector<std::string> FindImages(const std::filesystem::path& folder) {
     }
     if (!HasImageExtension(path) || !entry->is_regular_file(ignored)) continue;
     names.push_back(path.lexically_relative(folder).generic_string());
-    if (!IsSafeImageName(names.back())) {
-      throw Error(path.string(), "has a backslash or a control character in its name",
-                  "rename the picture");
-    }
   }
   return names;
 }
@@ -288,6 +284,8 @@ ImageInfo ReadImageInfo(const std::filesystem::path& path) {
   info.exif_orientation = exif.orientation;
   info.gps = exif.gps;
   info.camera = std::move(exif.camera);
+  info.heights = exif.heights;
+  info.taken = std::move(exif.taken);
   return info;
 }
 
@@ -306,6 +304,16 @@ std::string PictureFile::Hash() const { return HashBytes(bytes_.data(), bytes_.s
 uint64_t PictureFile::BytesToDecode() const {
   return colmap_seapoint::BytesToDecode(OpenImageBytes(path_, bytes_),
                                         ReadHeader(OpenImageBytes(path_, bytes_)));
+}
+
+GrayImage PictureFile::DecodeMask() const {
+  GrayImage mask = DecodeGray();  // refuses what is not whole
+  const cv::Mat full = cv::imdecode(bytes_, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH);
+  if (full.type() != CV_16UC1 || full.cols != mask.width || full.rows != mask.height) return mask;
+  for (int y = 0; y < mask.height; ++y) {
+    for (int x = 0; x < mask.width; ++x) mask.At(x, y) = full.at<uint16_t>(y, x) != 0 ? 255 : 0;
+  }
+  return mask;
 }
 
 GrayImage PictureFile::DecodeGray() const {

@@ -17,7 +17,8 @@ namespace colmap_seapoint {
 
 // Names (relative to `image_path`, '/' between folders, sorted bytewise) of all files below it with
 // a picture's extension (jpg jpeg png tif tiff bmp webp ppm pgm jp2, any case). Hidden files and
-// folders are left out. Throws Error when the folder is missing or holds no picture.
+// folders are left out. Throws Error when the folder is missing or holds no picture. Names that
+// IsSafeImageName refuses are among them, for whoever lists them to name and leave out.
 std::vector<std::string> ListImages(const std::filesystem::path& image_path);
 
 // One name a line; blank lines and lines starting with '#' skipped. Throws Error for a missing
@@ -28,12 +29,21 @@ std::vector<std::string> ReadImageList(const std::filesystem::path& list_path);
 // a NUL or a newline: such a name could lead out of a folder.
 bool IsSafeImageName(const std::string& name);
 
+// Heights that EXIF or XMP tell, by what they are measured from; metres.
+struct CaptureHeights {
+  std::optional<double> depth;        // below the surface (EXIF's WaterDepth, XMP's Depth)
+  std::optional<double> altitude;     // EXIF's GPSAltitude, else XMP's AbsoluteAltitude
+  std::optional<double> above_start;  // XMP's RelativeAltitude: above where the flight began
+};
+
 struct ImageInfo {
   int width = 0;  // as stored: the EXIF orientation is not applied, as in COLMAP
   int height = 0;
   int exif_orientation = 1;        // 1..8; not 1: the picture is stored turned
   std::optional<GeoPosition> gps;  // from EXIF; altitude 0 when it tells none
   ExifCamera camera;
+  CaptureHeights heights;
+  std::string taken;  // EXIF's DateTimeOriginal with its fraction, as it stands there; "" = none
 };
 
 // Reads the header (and EXIF) only. Throws Error for missing, zero-byte, unreadable files.
@@ -58,6 +68,8 @@ class PictureFile {
   uint64_t BytesToDecode() const;
 
   GrayImage DecodeGray() const;
+  // As DecodeGray(), for a mask: what is not 0 in a 16-bit PNG stays so, however dark it is.
+  GrayImage DecodeMask() const;
   // A JPEG's own planes, neither enlarged nor converted; of other formats, and of a JPEG that holds
   // none such, the planes of its red, green and blue. A grey picture has no colour.
   Picture Decode() const;

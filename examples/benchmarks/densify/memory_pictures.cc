@@ -29,8 +29,8 @@ std::optional<ColmapDatabase> OpenDatabase(const std::string& path) {
 MemoryPictures::MemoryPictures(const SparseModel& model, const std::filesystem::path& image_path,
                                const std::string& database_path, int num_threads)
     : database_(OpenDatabase(database_path)),
-      source_(model, image_path, database_ ? &*database_ : nullptr, SeaPointExtractionOptions(),
-              SeaPointMatchingOptions()) {
+      source_(model, image_path, PictureMasks(""), database_ ? &*database_ : nullptr,
+              SeaPointExtractionOptions(), SeaPointMatchingOptions()) {
   pictures_.resize(model.images.size());
   features_.resize(model.images.size());
   ParallelFor(num_threads, static_cast<int64_t>(model.images.size()), [&](int64_t i) {
@@ -41,8 +41,7 @@ MemoryPictures::MemoryPictures(const SparseModel& model, const std::filesystem::
       features_[i] = std::move(*stored);
       continue;
     }
-    const GrayImage& gray = pictures_[i].luma;
-    seapoint_cpu_ += CpuSecondsOf([&] { features_[i] = source_.FindSeaPoints(gray); });
+    seapoint_cpu_ += CpuSecondsOf([&] { features_[i] = source_.FindSeaPoints(pictures_[i]); });
   }
   if (source_.NumInDatabase() > 0) seapoint_cpu_ = kNotMeasured;
 }
@@ -55,7 +54,7 @@ std::optional<Features> MemoryPictures::ReadSeaPoints(int image_idx) {
   return features_.at(static_cast<size_t>(image_idx));
 }
 
-Features MemoryPictures::FindSeaPoints(const GrayImage& picture) {
+Features MemoryPictures::FindSeaPoints(const Picture& picture) {
   return source_.FindSeaPoints(picture);
 }
 

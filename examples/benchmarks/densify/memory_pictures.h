@@ -24,7 +24,7 @@ class MemoryPictures : public PictureSource {
 
   Picture ReadPicture(int image_idx) override;
   std::optional<Features> ReadSeaPoints(int image_idx) override;
-  Features FindSeaPoints(const GrayImage& picture) override;
+  Features FindSeaPoints(const Picture& picture) override;
   // The database's; none after DropSeaPoints, which changes the indices.
   std::optional<FeatureMatches> ReadMatches(int image_idx1, int image_idx2) override;
   FeatureMatches Match(const Features& features1, const Features& features2) override;

@@ -207,7 +207,7 @@ class PlannedSource : public PictureSource {
     }
     return features;
   }
-  Features FindSeaPoints(const GrayImage&) override { return {}; }
+  Features FindSeaPoints(const Picture&) override { return {}; }
   std::optional<FeatureMatches> ReadMatches(int image_idx1, int image_idx2) override {
     ++num_asked;
     FeatureMatches matches;

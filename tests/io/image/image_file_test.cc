@@ -33,6 +33,17 @@ void AddExif(const std::filesystem::path& path,
   image->writeMetadata();
 }
 
+// In the namespace that a maker of drones uses.
+void AddXmp(const std::filesystem::path& path,
+            const std::vector<std::pair<std::string, std::string>>& properties) {
+  Exiv2::XmpParser::initialize();
+  Exiv2::XmpProperties::registerNs("http://www.dji.com/drone-dji/1.0/", "drone-dji");
+  const auto image = Exiv2::ImageFactory::open(path.string());
+  image->readMetadata();
+  for (const auto& [name, value] : properties) image->xmpData()["Xmp.drone-dji." + name] = value;
+  image->writeMetadata();
+}
+
 TEST(PictureFile, HashAndPixelsComeFromTheSameBytes) {
   const TempDir dir;
   const auto path = dir / "a.png";
@@ -89,7 +100,7 @@ TEST(ListImages, Errors) {
   EXPECT_ERROR(ListImages(dir / "missing"), "there is no such folder");
   EXPECT_ERROR(ListImages(dir.Path()), "holds no picture");
   WriteBytes(dir / "a\\b.jpg", "x");
-  EXPECT_ERROR(ListImages(dir.Path()), "rename the picture");
+  EXPECT_EQ(ListImages(dir.Path()), std::vector<std::string>{"a\\b.jpg"});  // named by the caller
 }
 
 TEST(ReadImageList, SkipsBlanksAndComments) {
@@ -248,6 +259,29 @@ TEST(ImageInfo, GpsPosition) {
   EXPECT_NEAR(gps->altitude_m, -12.5, 1e-9);
   AddExif(dir / "a.jpg", {{"Exif.GPSInfo.GPSLatitude", "95/1 0/1 0/1"}});
   EXPECT_FALSE(ReadImageInfo(dir / "a.jpg").gps);
+}
+
+TEST(ImageInfo, HeightsAndTime) {
+  const TempDir dir;
+  WriteImage(dir / "a.jpg", MakeColor(40, 30));
+  ImageInfo info = ReadImageInfo(dir / "a.jpg");
+  EXPECT_FALSE(info.heights.depth || info.heights.altitude || info.heights.above_start);
+  EXPECT_EQ(info.taken, "");
+  AddXmp(dir / "a.jpg", {{"AbsoluteAltitude", "+198.31"}, {"RelativeAltitude", "+39.80 m"}});
+  info = ReadImageInfo(dir / "a.jpg");
+  EXPECT_EQ(info.heights.altitude, 198.31);
+  EXPECT_EQ(info.heights.above_start, 39.8);
+  EXPECT_FALSE(info.heights.depth);
+  AddXmp(dir / "a.jpg", {{"Depth", "25/2"}});
+  AddExif(dir / "a.jpg", {{"Exif.GPSInfo.GPSAltitude", "125/10"},
+                          {"Exif.GPSInfo.GPSAltitudeRef", "1"},
+                          {"Exif.Photo.DateTimeOriginal", "2024:05:01 12:00:00"}});
+  info = ReadImageInfo(dir / "a.jpg");
+  EXPECT_EQ(info.heights.depth, 12.5);
+  EXPECT_EQ(info.heights.altitude, -12.5);
+  EXPECT_EQ(info.taken, "2024:05:01 12:00:00");
+  AddExif(dir / "a.jpg", {{"Exif.Photo.SubSecTimeOriginal", "25"}});
+  EXPECT_EQ(ReadImageInfo(dir / "a.jpg").taken, "2024:05:01 12:00:00.25");
 }
 
 TEST(ImageInfo, OrientationIsToldButNotApplied) {
