@@ -1,0 +1,73 @@
+#include "colmap_seapoint/frames/extract_frames.h"
+
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <optional>
+#include <system_error>
+
+#include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/frames/frame_chooser.h"
+#include "colmap_seapoint/io/image/jpeg_exif.h"
+#include "colmap_seapoint/io/video/video_file.h"
+
+namespace colmap_seapoint {
+namespace {
+
+std::string FrameName(const std::string& prefix, int64_t index) {
+  char number[32];
+  std::snprintf(number, sizeof(number), "_%06lld.jpg", static_cast<long long>(index));
+  return prefix + number;
+}
+
+std::optional<int64_t> TimeOf(const VideoInfo& info, double seconds) {
+  if (!info.start_time_us) return std::nullopt;
+  return *info.start_time_us + std::llround(seconds * 1e6);
+}
+
+std::string IsoText(const std::optional<int64_t>& time_us) {
+  if (!time_us) return {};
+  const std::time_t seconds = *time_us / 1000000;
+  std::tm parts{};
+  gmtime_r(&seconds, &parts);
+  char date[32], text[48];
+  std::strftime(date, sizeof(date), "%Y-%m-%dT%H:%M:%S", &parts);
+  std::snprintf(text, sizeof(text), "%s.%03d", date,
+                static_cast<int>(*time_us % 1000000 / 1000));
+  return text;
+}
+
+ExtractedFrame Write(const ChosenFrame& chosen, const VideoInfo& info,
+                     const std::filesystem::path& images, const std::string& prefix) {
+  const auto time_us = TimeOf(info, chosen.frame.seconds);
+  const std::string name = FrameName(prefix, chosen.frame.index);
+  WriteJpeg(images / name, chosen.frame.Color(), MakeExif(time_us, info.maker, info.model));
+  return {name, chosen.frame.seconds, chosen.overlap, chosen.sharpness, IsoText(time_us)};
+}
+
+}  // namespace
+
+ExtractedClip ExtractFrames(const std::filesystem::path& clip, const std::filesystem::path& images,
+                            const std::string& prefix, const FrameSelectionOptions& options,
+                            int num_threads) {
+  VideoFile video(clip, num_threads);
+  ExtractedClip extracted;
+  FrameChooser chooser(options, [&](const ChosenFrame& chosen) {
+    extracted.frames.push_back(Write(chosen, video.Info(), images, prefix));
+  });
+  const auto total = static_cast<int64_t>(std::ceil(video.Info().duration_seconds));
+  Progress progress("Frames of " + clip.filename().string() + ", seconds", total);
+  while (const auto frame = video.Next()) {
+    chooser.Add(*frame);
+    ++extracted.num_frames;
+    extracted.seconds = frame->seconds;
+    extracted.is_interlaced |= frame->IsInterlaced();
+    progress.Update(std::min(total, static_cast<int64_t>(frame->seconds)));
+  }
+  chooser.Finish();
+  progress.Finish();
+  extracted.shortfall = video.Shortfall();
+  return extracted;
+}
+
+}  // namespace colmap_seapoint
