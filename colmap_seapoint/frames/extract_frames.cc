@@ -32,28 +32,30 @@ std::string IsoText(const std::optional<int64_t>& time_us) {
   gmtime_r(&seconds, &parts);
   char date[32], text[48];
   std::strftime(date, sizeof(date), "%Y-%m-%dT%H:%M:%S", &parts);
-  std::snprintf(text, sizeof(text), "%s.%03d", date,
-                static_cast<int>(*time_us % 1000000 / 1000));
+  std::snprintf(text, sizeof(text), "%s.%03d", date, static_cast<int>(*time_us % 1000000 / 1000));
   return text;
 }
 
-ExtractedFrame Write(const ChosenFrame& chosen, const VideoInfo& info,
-                     const std::filesystem::path& images, const std::string& prefix) {
-  const auto time_us = TimeOf(info, chosen.frame.seconds);
-  const std::string name = FrameName(prefix, chosen.frame.index);
-  WriteJpeg(images / name, chosen.frame.Color(), MakeExif(time_us, info.maker, info.model));
-  return {name, chosen.frame.seconds, chosen.overlap, chosen.sharpness, IsoText(time_us)};
+ExtractedFrame Describe(const ChosenFrame& chosen, const VideoInfo& info,
+                        const std::string& prefix) {
+  return {FrameName(prefix, chosen.frame.index), chosen.frame.seconds, chosen.overlap,
+          chosen.sharpness, IsoText(TimeOf(info, chosen.frame.seconds))};
 }
 
 }  // namespace
 
 ExtractedClip ExtractFrames(const std::filesystem::path& clip, const std::filesystem::path& images,
                             const std::string& prefix, const FrameSelectionOptions& options,
-                            int num_threads) {
+                            int num_threads, const std::function<void(const std::string&)>& begin) {
   VideoFile video(clip, num_threads);
   ExtractedClip extracted;
   FrameChooser chooser(options, [&](const ChosenFrame& chosen) {
-    extracted.frames.push_back(Write(chosen, video.Info(), images, prefix));
+    const VideoInfo& info = video.Info();
+    extracted.frames.push_back(Describe(chosen, info, prefix));
+    const std::string& name = extracted.frames.back().name;
+    begin(name);
+    WriteJpeg(images / name, chosen.frame.Color(),
+              MakeExif(TimeOf(info, chosen.frame.seconds), info.maker, info.model));
   });
   const auto total = static_cast<int64_t>(std::ceil(video.Info().duration_seconds));
   Progress progress("Frames of " + clip.filename().string() + ", seconds", total);

@@ -1,7 +1,9 @@
 // A clip -> the frames that a reconstruction needs, as JPEGs.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,17 +21,18 @@ struct ExtractedFrame {
 
 struct ExtractedClip {
   std::vector<ExtractedFrame> frames;
-  int64_t num_frames = 0;    // of the clip
-  double seconds = 0;        // from its first frame to its last
+  int64_t num_frames = 0;  // of the clip
+  double seconds = 0;      // from its first frame to its last
   bool is_interlaced = false;
-  std::string shortfall;     // what of the clip could not be read, as words; empty = nothing
+  std::string shortfall;  // what of the clip could not be read, as words; empty = nothing
 };
 
-// Writes <images>/<prefix>_<index of the frame, six digits>.jpg, with EXIF where the container tells
-// a time or a camera. Shows progress. Memory: a few frames, however long the clip is. Throws Error
-// where VideoFile does, and when a file cannot be written.
+// Writes <images>/<prefix>_<index of the frame, six digits>.jpg, with EXIF where the container
+// tells a time or a camera. `begin` is called with each name before its file is begun. Shows
+// progress. Memory: a few frames, however long the clip is. Throws Error where VideoFile does, and
+// when a file cannot be written.
 ExtractedClip ExtractFrames(const std::filesystem::path& clip, const std::filesystem::path& images,
                             const std::string& prefix, const FrameSelectionOptions& options,
-                            int num_threads);
+                            int num_threads, const std::function<void(const std::string&)>& begin);
 
 }  // namespace colmap_seapoint

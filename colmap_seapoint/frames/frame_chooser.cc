@@ -157,8 +157,7 @@ bool FrameChooser::IsBlurred(double sharpness) const {
 void FrameChooser::Finish() {
   if (candidate_ && is_confirmed_) TakeCandidate();
   // A single frame, or none that goes with another: better one than nothing.
-  if (reference_ && num_chosen_ == 0 &&
-      reference_->view.features.points.size() >= kMinNumPoints) {
+  if (reference_ && num_chosen_ == 0 && reference_->view.features.points.size() >= kMinNumPoints) {
     Choose(0);
   }
 }

@@ -25,9 +25,9 @@ ClipKey KeyOf(const std::string& name) {
   const std::string folder = path.parent_path().generic_string();
   const std::string stem = path.stem().string();
   if (stem.size() == 8 && AreDigits(stem.substr(4))) {
-    const bool is_chapter =
-        stem[0] == 'G' && std::string("XHLSP").find(stem[1]) != std::string::npos &&
-        AreDigits(stem.substr(2, 2));
+    const bool is_chapter = stem[0] == 'G' &&
+                            std::string("XHLSP").find(stem[1]) != std::string::npos &&
+                            AreDigits(stem.substr(2, 2));
     // The camera numbers its recordings, whatever letter stands for the codec.
     if (is_chapter) return {folder, stem.substr(4), stem.substr(2, 2)};
     if (stem.compare(0, 4, "GOPR") == 0) return {folder, stem.substr(4), "00"};
@@ -53,12 +53,12 @@ std::vector<Clip> OrderClips(const std::filesystem::path& folder, std::vector<st
   std::sort(names.begin(), names.end(), Precedes);
   std::vector<Clip> clips;
   std::map<std::pair<std::string, std::string>, std::string> first_stems;  // of recordings
-  std::map<std::string, int> num_uses;                                    // of prefixes
+  std::map<std::string, int> num_uses;                                     // of prefixes
   for (const std::string& name : names) {
     const ClipKey key = KeyOf(name);
     const std::string stem = std::filesystem::path(name).stem().string();
-    const std::string& first = first_stems.emplace(std::pair(key.folder, key.recording), stem)
-                                   .first->second;
+    const std::string& first =
+        first_stems.emplace(std::pair(key.folder, key.recording), stem).first->second;
     std::string prefix = Joined(key.folder, first + "/" + stem);
     // dive.mp4 beside dive.mov
     const int uses = ++num_uses[prefix];

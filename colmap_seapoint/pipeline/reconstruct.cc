@@ -17,6 +17,7 @@
 #include "colmap_seapoint/pipeline/map.h"
 #include "colmap_seapoint/pipeline/match.h"
 #include "colmap_seapoint/pipeline/scale_models.h"
+#include "colmap_seapoint/pipeline/take_in.h"
 #include "colmap_seapoint/pipeline/workspace_database.h"
 #include "colmap_seapoint/report/reconstruction_summary.h"
 #include "feature/match_features.h"
@@ -188,13 +189,15 @@ CommandResult WriteReport(const Workspace& workspace, const std::vector<ModelSum
 
 CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& options) {
   options.Check();
-  const Workspace workspace(options.image_path, options.workspace_path);
-  const MappingPlan plan = PlanMapping(options, workspace);
+  Workspace workspace(options.image_path, options.workspace_path);
+  MappingPlan plan = PlanMapping(options, workspace);
   WorkspaceState state(workspace.root, workspace.Names());
   CheckWritableDir(workspace.report);
   RunReport report = StartReport("automatic_reconstructor", options, options.run);
   report.options.insert(report.options.end(), options.mapper.begin(), options.mapper.end());
 
+  TakeInPictures({options.frames, options.run.num_threads}, &workspace, &state, &report);
+  plan.job.image_path = workspace.images;
   const PictureSet pictures = ReadPictureSet(ExtractorOptions(options, workspace));
   const Stage begin = DatabaseStage(options, pictures.readable);
   ColmapDatabase database =

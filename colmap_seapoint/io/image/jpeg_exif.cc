@@ -112,8 +112,16 @@ void WriteJpeg(const std::filesystem::path& path, const ColorImage& image, const
   file.Write(jpeg.data(), kStartBytes);
   if (!exif.empty()) {
     const size_t length = exif.size() + 8;
-    const uint8_t head[] = {0xff, 0xe1, static_cast<uint8_t>(length >> 8),
-                            static_cast<uint8_t>(length & 0xff), 'E', 'x', 'i', 'f', 0, 0};
+    const uint8_t head[] = {0xff,
+                            0xe1,
+                            static_cast<uint8_t>(length >> 8),
+                            static_cast<uint8_t>(length & 0xff),
+                            'E',
+                            'x',
+                            'i',
+                            'f',
+                            0,
+                            0};
     file.Write(head, sizeof(head));
     file.Write(exif.data(), exif.size());
   }

@@ -20,7 +20,8 @@ ExifBlock MakeExif(std::optional<int64_t> time_us, const std::string& maker,
                    const std::string& model);
 
 // What a picture's block, or its file (any format that Exiv2 reads, RAW among them), tells of the
-// camera, the time and the place, without previews and makers' notes. Empty for what cannot be read.
+// camera, the time and the place, without previews and makers' notes. Empty for what cannot be
+// read.
 ExifBlock CleanExif(const ExifBlock& exif);
 ExifBlock CleanExifOf(const std::filesystem::path& path);
 

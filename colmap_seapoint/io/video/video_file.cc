@@ -35,7 +35,8 @@ void RefuseNoFile(const std::filesystem::path& path) {
 AvPointer<AVFormatContext> OpenContainer(const std::filesystem::path& path) {
   AVFormatContext* opened = nullptr;
   // "file:" keeps a name with a colon from being taken for a protocol.
-  const int code = avformat_open_input(&opened, ("file:" + path.string()).c_str(), nullptr, nullptr);
+  const int code =
+      avformat_open_input(&opened, ("file:" + path.string()).c_str(), nullptr, nullptr);
   if (code == AVERROR(ENOMEM)) throw std::bad_alloc();
   if (code < 0) {
     throw Error(path.string(),
@@ -81,9 +82,10 @@ AvPointer<AVCodecContext> OpenCodec(const std::filesystem::path& path, const AVS
   codec->max_pixels = kMaxPixels;
   const int code = avcodec_open2(codec.get(), decoder, nullptr);
   if (code < 0) {
-    throw Error(path.string(), "its " + std::string(decoder->name) + " cannot be decoded (" +
-                                   AvErrorText(code) + ")",
-                "convert it to H.264 in an MP4");
+    throw Error(
+        path.string(),
+        "its " + std::string(decoder->name) + " cannot be decoded (" + AvErrorText(code) + ")",
+        "convert it to H.264 in an MP4");
   }
   return codec;
 }

@@ -17,10 +17,6 @@ struct AVFrame;
 
 namespace colmap_seapoint {
 
-// Whether the extension is one of a video's (mp4 mov m4v mkv avi mts m2ts ts mpg mpeg wmv webm 3gp
-// mxf insv 360, any case). It says nothing about what the file holds.
-bool HasVideoExtension(const std::filesystem::path& path);
-
 struct VideoInfo {
   int width = 0;  // pixels of a frame as it comes: upright and square
   int height = 0;
@@ -70,8 +66,8 @@ class VideoFile {
   // until the next one that can be decoded by itself.
   std::optional<VideoFrame> Next();
 
-  // What was missing, as words for the user, once Next() has given nullopt: damaged frames that were
-  // passed over, or an end before the promised one. "" when all was there.
+  // What was missing, as words for the user, once Next() has given nullopt: damaged frames that
+  // were passed over, or an end before the promised one. "" when all was there.
   std::string Shortfall() const;
 
  private:

@@ -57,8 +57,7 @@ Image<uint8_t> Turned(Image<uint8_t> image, int quarter_turns) {
     for (int x = 0; x < turned.width; ++x) {
       const int from_x = quarter_turns == 1 ? y : quarter_turns == 2 ? w - 1 - x : w - 1 - y;
       const int from_y = quarter_turns == 1 ? h - 1 - x : quarter_turns == 2 ? h - 1 - y : x;
-      std::memcpy(&turned.At(x, y), &image.At(from_x, from_y),
-                  static_cast<size_t>(image.channels));
+      std::memcpy(&turned.At(x, y), &image.At(from_x, from_y), static_cast<size_t>(image.channels));
     }
   }
   return turned;

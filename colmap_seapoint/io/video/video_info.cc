@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <set>
 #include <string>
 
 #include "colmap_seapoint/io/video/video_decoder.h"
@@ -41,22 +40,11 @@ int QuarterTurns(const AVStream& stream) {
 
 }  // namespace
 
-bool HasVideoExtension(const std::filesystem::path& path) {
-  static const std::set<std::string> kExtensions = {
-      ".mp4", ".mov", ".m4v", ".mkv", ".avi",  ".mts", ".m2ts", ".ts",
-      ".mpg", ".mpeg", ".wmv", ".webm", ".3gp", ".mxf", ".insv", ".360"};
-  std::string extension = path.extension().string();
-  for (char& c : extension) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return kExtensions.count(extension) > 0;
-}
-
 VideoInfo ReadVideoInfo(const AVFormatContext& format, const AVStream& stream) {
   VideoInfo info;
   const AVCodecParameters& codec = *stream.codecpar;
-  const AVRational aspect = av_guess_sample_aspect_ratio(
-      const_cast<AVFormatContext*>(&format), const_cast<AVStream*>(&stream), nullptr);
+  const AVRational aspect = av_guess_sample_aspect_ratio(const_cast<AVFormatContext*>(&format),
+                                                         const_cast<AVStream*>(&stream), nullptr);
   // Beyond this it is a damaged header, not a format.
   const double pixel_aspect = aspect.num > 0 && aspect.den > 0 ? av_q2d(aspect) : 1;
   info.pixel_aspect = pixel_aspect > 0.25 && pixel_aspect < 4 ? pixel_aspect : 1;
@@ -72,12 +60,14 @@ VideoInfo ReadVideoInfo(const AVFormatContext& format, const AVStream& stream) {
   const AVRational rate = stream.avg_frame_rate;
   if (rate.num > 0 && rate.den > 0) info.frame_seconds = 1 / av_q2d(rate);
   int64_t start_us = 0;
-  const std::string start = Tag(format, stream, {"creation_time", "com.apple.quicktime.creationdate"});
+  const std::string start =
+      Tag(format, stream, {"creation_time", "com.apple.quicktime.creationdate"});
   if (!start.empty() && av_parse_time(&start_us, start.c_str(), 0) == 0 &&
       start_us >= kEarliestStart) {
     info.start_time_us = start_us;
   }
-  info.maker = Tag(format, stream, {"com.apple.quicktime.make", "com.android.manufacturer", "make"});
+  info.maker =
+      Tag(format, stream, {"com.apple.quicktime.make", "com.android.manufacturer", "make"});
   info.model = Tag(format, stream, {"com.apple.quicktime.model", "com.android.model", "model"});
   return info;
 }
