@@ -9,7 +9,6 @@
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/frames/frame_chooser.h"
 #include "colmap_seapoint/io/image/jpeg_exif.h"
-#include "colmap_seapoint/io/video/video_file.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -44,22 +43,24 @@ ExtractedFrame Describe(const ChosenFrame& chosen, const VideoInfo& info,
 
 }  // namespace
 
-ExtractedClip ExtractFrames(const std::filesystem::path& clip, const std::filesystem::path& images,
-                            const std::string& prefix, const FrameSelectionOptions& options,
-                            int num_threads, const std::function<void(const std::string&)>& begin) {
-  VideoFile video(clip, num_threads);
+ExtractedClip ExtractFrames(VideoFile* video, const std::string& label,
+                            const std::filesystem::path& images, const std::string& prefix,
+                            const FrameSelectionOptions& options,
+                            const std::function<void(const std::string&)>& begin) {
+  const VideoInfo& info = video->Info();
   ExtractedClip extracted;
   FrameChooser chooser(options, [&](const ChosenFrame& chosen) {
-    const VideoInfo& info = video.Info();
     extracted.frames.push_back(Describe(chosen, info, prefix));
     const std::string& name = extracted.frames.back().name;
     begin(name);
+    std::error_code error;  // whose result WriteJpeg says
+    std::filesystem::create_directories((images / name).parent_path(), error);
     WriteJpeg(images / name, chosen.frame.Color(),
               MakeExif(TimeOf(info, chosen.frame.seconds), info.maker, info.model));
   });
-  const auto total = static_cast<int64_t>(std::ceil(video.Info().duration_seconds));
-  Progress progress("Frames of " + clip.filename().string() + ", seconds", total);
-  while (const auto frame = video.Next()) {
+  const auto total = static_cast<int64_t>(std::ceil(info.duration_seconds));
+  Progress progress("Frames of " + label + ", seconds", total);
+  while (const auto frame = video->Next()) {
     chooser.Add(*frame);
     ++extracted.num_frames;
     extracted.seconds = frame->seconds;
@@ -68,7 +69,7 @@ ExtractedClip ExtractFrames(const std::filesystem::path& clip, const std::filesy
   }
   chooser.Finish();
   progress.Finish();
-  extracted.shortfall = video.Shortfall();
+  extracted.shortfall = video->Shortfall();
   return extracted;
 }
 

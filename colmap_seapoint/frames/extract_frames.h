@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "colmap_seapoint/frames/frame_options.h"
+#include "colmap_seapoint/io/video/video_file.h"
 
 namespace colmap_seapoint {
 
@@ -28,11 +29,12 @@ struct ExtractedClip {
 };
 
 // Writes <images>/<prefix>_<index of the frame, six digits>.jpg, with EXIF where the container
-// tells a time or a camera. `begin` is called with each name before its file is begun. Shows
-// progress. Memory: a few frames, however long the clip is. Throws Error where VideoFile does, and
-// when a file cannot be written.
-ExtractedClip ExtractFrames(const std::filesystem::path& clip, const std::filesystem::path& images,
-                            const std::string& prefix, const FrameSelectionOptions& options,
-                            int num_threads, const std::function<void(const std::string&)>& begin);
+// tells a time or a camera; creates folders. `label` is the clip's name for the progress, and
+// `begin` is called with each name before its file is begun. Memory: a few frames, however long the
+// video is. Throws Error when a file cannot be written.
+ExtractedClip ExtractFrames(VideoFile* video, const std::string& label,
+                            const std::filesystem::path& images, const std::string& prefix,
+                            const FrameSelectionOptions& options,
+                            const std::function<void(const std::string&)>& begin);
 
 }  // namespace colmap_seapoint

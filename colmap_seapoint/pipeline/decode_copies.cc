@@ -58,6 +58,8 @@ void Decode(const fs::path& source, const fs::path& folder, const Record& known,
       return;
     }
     const CameraPicture picture = ReadCameraPicture(from);
+    std::error_code error;  // whose result WriteJpeg says
+    fs::create_directories(to.parent_path(), error);
     WriteJpeg(to, picture.pixels, picture.exif);
     copy->hash = HashFile(to);
   } catch (const Error& error) {

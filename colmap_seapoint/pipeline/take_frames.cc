@@ -76,23 +76,57 @@ Stage ClipStage(size_t k, const Clip& clip, const FrameSelectionOptions& options
   return {"frames_" + std::to_string(k), kFrameSelectionVersion,
           clip.prefix + "\n" + HashSamplesOfFile(clip.path) + "\n" +
               OptionsFingerprint(OptionValues(options)),
-          clip.name + ": its frames are chosen already"};
+          clip.name + ": its frames are there already"};
 }
 
-ExtractedClip TakeClip(size_t k, const Clip& clip, const FrameSelectionOptions& options,
-                       int num_threads, OutputFolder* folder, WorkspaceState* state) {
-  const Stage stage = ClipStage(k, clip, options);
-  const ExtractedClip extracted =
-      RunStage<ExtractedClip>(state, stage, [&]() -> StageOutput<ExtractedClip> {
-        StageOutput<ExtractedClip> output;
-        output.result = ExtractFrames(clip.path, folder->Path(), clip.prefix, options, num_threads,
-                                      [&](const std::string& name) { folder->Claim({name}); });
-        for (const auto& frame : output.result.frames) {
-          output.outputs.push_back(folder->Path() / frame.name);
-        }
-        return output;
-      });
-  Tell(clip, extracted);
+ExtractedClip ExtractClip(const Stage& stage, const Clip& clip,
+                          const FrameSelectionOptions& options, VideoFile* video,
+                          OutputFolder* folder, WorkspaceState* state) {
+  state->Forget(stage.name);
+  const auto extracted = ExtractFrames(video, clip.name, folder->Path(), clip.prefix, options,
+                                       [&](const std::string& name) { folder->Claim({name}); });
+  std::vector<std::filesystem::path> outputs;
+  for (const ExtractedFrame& frame : extracted.frames) {
+    outputs.push_back(folder->Path() / frame.name);
+  }
+  FinishStage(stage, extracted, outputs, state);
+  return extracted;
+}
+
+std::string CsvRow(const Clip& clip, const ExtractedFrame& frame) {
+  return Quoted(frame.name) + "," + Quoted(clip.name) + "," + Decimals(frame.seconds, 3) + "," +
+         Decimals(frame.overlap, 3) + "," + Decimals(frame.sharpness, 1) + "," + frame.time + "\n";
+}
+
+// What keeps the clip from being used in full; empty = nothing does.
+std::string ProblemOf(const ExtractedClip& extracted) {
+  if (!extracted.frames.empty() || !extracted.shortfall.empty()) return extracted.shortfall;
+  return "shows nothing that can be followed from frame to frame";
+}
+
+// nullopt, with the reason in the report, for a clip that cannot be read. A frame that cannot be
+// written is no fault of the clip's, and ends the run.
+std::optional<ExtractedClip> TakeClip(size_t k, const Clip& clip,
+                                      const FrameSelectionOptions& options, int num_threads,
+                                      OutputFolder* folder, WorkspaceState* state,
+                                      RunReport* report) {
+  std::optional<Stage> stage;
+  std::optional<ExtractedClip> extracted;
+  std::optional<VideoFile> video;
+  try {
+    stage = ClipStage(k, clip, options);
+    extracted = ResultIfDone<ExtractedClip>(*state, *stage);
+    if (!extracted) video.emplace(clip.path, num_threads);
+  } catch (const Error& error) {
+    LeaveOut(clip.name, error.Finding(), report);
+    return std::nullopt;
+  }
+  if (video) extracted = ExtractClip(*stage, clip, options, &*video, folder, state);
+  Tell(clip, *extracted);
+  const std::string problem = ProblemOf(*extracted);
+  if (!problem.empty()) {
+    LeaveOut(extracted->frames.empty() ? clip.name : "a part of " + clip.name, problem, report);
+  }
   return extracted;
 }
 
@@ -103,33 +137,17 @@ std::set<std::string> TakeFrames(const std::vector<Clip>& clips,
                                  OutputFolder* folder, WorkspaceState* state, RunReport* report) {
   std::set<std::string> names = {kFramesCsv};
   std::string csv = "frame,clip,seconds,overlap,sharpness,time\n";
-  std::optional<Error> first_error;
   for (size_t k = 0; k < clips.size(); ++k) {
-    const Clip& clip = clips[k];
-    try {
-      const auto extracted = TakeClip(k, clip, options, num_threads, folder, state);
-      for (const ExtractedFrame& frame : extracted.frames) {
-        names.insert(frame.name);
-        csv += Quoted(frame.name) + "," + Quoted(clip.name) + "," + Decimals(frame.seconds, 3) +
-               "," + Decimals(frame.overlap, 3) + "," + Decimals(frame.sharpness, 1) + "," +
-               frame.time + "\n";
-      }
-      if (extracted.frames.empty() && extracted.shortfall.empty()) {
-        throw Error(clip.path.string(), "shows nothing that can be followed from frame to frame",
-                    "give a video of a textured scene");
-      }
-      if (!extracted.shortfall.empty()) {
-        LeaveOut("a part of " + clip.name, extracted.shortfall, report);
-      }
-    } catch (const Error& error) {
-      if (!first_error) first_error = error;
-      LeaveOut(clip.name, error.Finding(), report);
+    const auto extracted = TakeClip(k, clips[k], options, num_threads, folder, state, report);
+    if (!extracted) continue;
+    for (const ExtractedFrame& frame : extracted->frames) {
+      names.insert(frame.name);
+      csv += CsvRow(clips[k], frame);
     }
   }
   if (names.size() == 1) {
-    if (first_error) throw Error(*first_error);
     throw Error(clips.front().path.string(), report->left_out.back().reason,
-                "copy it again from the card");
+                "give a video of a textured scene, as the camera recorded it");
   }
   folder->Claim({kFramesCsv});
   WriteTextFile(folder->Path() / kFramesCsv, csv);

@@ -94,7 +94,8 @@ FileKind KindOf(const std::filesystem::path& path) {
       {FileKind::kVideo,
        {".mp4", ".mov", ".m4v", ".mkv", ".avi", ".mts", ".m2ts", ".ts", ".mpg", ".mpeg", ".wmv",
         ".webm", ".3gp", ".mxf", ".insv", ".360"}},
-      {FileKind::kAside, {".thm", ".lrv", ".lrf", ".glv", ".db", ".ini", ".xmp", ".aae", ".srt", ".csv"}}};
+      {FileKind::kAside,
+       {".thm", ".lrv", ".lrf", ".glv", ".db", ".ini", ".xmp", ".aae", ".srt", ".csv"}}};
   const std::string extension = InSmallLetters(path.extension().string());
   for (const auto& [kind, extensions] : kExtensions) {
     if (extensions.count(extension) > 0) return kind;
