@@ -17,6 +17,8 @@ constexpr double kLeastWorth = 0.05;
 // Looks are no further apart, so that no start of a motion is missed.
 constexpr double kMaxSecondsBetweenLooks = 0.25;
 constexpr int kLooksInWindow = 4;
+// Nothing was lost: the next look may be this many times as far away as the last one was.
+constexpr double kManyTimes = 16;
 // How long a frame that matches nothing is waited through: a fish, a flash, a blur.
 constexpr double kGlitchSeconds = 0.2, kBlurSeconds = 1.0;
 // Times the median of the looks before it.
@@ -31,10 +33,11 @@ FrameChooser::FrameChooser(const FrameSelectionOptions& options,
     : options_(options), choose_(std::move(choose)) {}
 
 void FrameChooser::Add(const VideoFrame& frame) {
-  if (reference_ && frame.seconds < next_look_) {
+  if (reference_ && frame.seconds < next_look_.seconds && frame.index < next_look_.index) {
     if (!candidate_) return;
     const double seconds = frame.seconds - last_look_->frame.seconds;
-    Consider(frame, last_look_->overlap - overlap_rate_ * seconds, Sharpness(frame.Gray()));
+    Consider(frame, last_look_->overlap - next_look_.overlap_rate * seconds,
+             Sharpness(frame.Gray()));
     return;
   }
   Look look = {frame, ViewOf(frame.Gray()), 0};
@@ -84,7 +87,7 @@ void FrameChooser::Lose(Look look) {
     const double patience = is_blurred ? kBlurSeconds : kGlitchSeconds;
     if (is_blurred || !candidate_) {
       if (look.frame.seconds - last < patience) {
-        next_look_ = look.frame.seconds;
+        next_look_ = {};
         return;
       }
     }
@@ -117,7 +120,7 @@ void FrameChooser::Begin(Look look) {
   is_confirmed_ = false;
   candidate_.reset();
   last_look_.reset();
-  next_look_ = 0;
+  next_look_ = {};
 }
 
 void FrameChooser::Choose(double overlap) {
@@ -137,13 +140,16 @@ void FrameChooser::PlanNextLook(const Look& look) {
   const Look& before = last_look_ ? *last_look_ : *reference_;
   const double overlap_before = last_look_ ? last_look_->overlap : 1;
   const double seconds = look.frame.seconds - before.frame.seconds;
-  overlap_rate_ = std::max(0.0, overlap_before - look.overlap) / std::max(seconds, 1e-6);
+  const double lost = std::max(0.0, overlap_before - look.overlap);
   const double open = options_.overlap + kOpen;
   const double window = (kOpen + kClose) / kLooksInWindow;
   // Half the way: the motion may grow faster.
   const double loss = std::max(window, (look.overlap - open) / 2);
-  const double step = overlap_rate_ > 0 ? loss / overlap_rate_ : kMaxSecondsBetweenLooks;
-  next_look_ = look.frame.seconds + std::min(step, kMaxSecondsBetweenLooks);
+  const double share = lost > 0 ? loss / lost : kManyTimes;  // of the time since the last look
+  const auto frames = static_cast<double>(look.frame.index - before.frame.index);
+  next_look_.seconds = look.frame.seconds + std::min(seconds * share, kMaxSecondsBetweenLooks);
+  next_look_.index = look.frame.index + static_cast<int64_t>(frames * std::min(share, kManyTimes));
+  next_look_.overlap_rate = lost / std::max(seconds, 1e-6);
 }
 
 bool FrameChooser::IsBlurred(double sharpness) const {

@@ -50,6 +50,13 @@ class FrameChooser {
     double overlap = 0, sharpness = 0, worth = 0;
   };
 
+  // When the next frame is looked at: at the first of both.
+  struct NextLook {
+    double seconds = 0;
+    int64_t index = 0;
+    double overlap_rate = 0;  // that is lost a second
+  };
+
   void Judge(Look look);
   void Lose(Look look);
   void TakeCandidate();
@@ -66,8 +73,7 @@ class FrameChooser {
   std::optional<Candidate> candidate_;
   std::optional<Look> last_look_;  // that was matched with the reference
   std::deque<double> sharpness_;   // of the last looks
-  double next_look_ = 0;           // seconds
-  double overlap_rate_ = 0;        // that is lost a second
+  NextLook next_look_;
   int64_t num_chosen_ = 0;
 };
 

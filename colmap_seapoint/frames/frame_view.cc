@@ -17,7 +17,7 @@ constexpr int kMinNumPoints = 500, kMaxNumPoints = 700;
 constexpr size_t kMinNumMatches = 20;
 // A displacement by parallax counts as one of this many times as far: views of one place from two
 // sides match worse than views of two places from one side.
-constexpr double kParallaxWeight = 2;
+constexpr double kParallaxWeight = 4;
 constexpr int kNumFits = 3;
 
 using Points = Eigen::Matrix2Xd;

@@ -32,10 +32,13 @@ struct VideoFile::Decoder {
   AVStream* stream = nullptr;  // of `format`
   AvPointer<AVCodecContext> codec;
   AvPointer<AVPacket> packet;
-  bool waits_for_key = false;  // after damage
+  bool waits_for_key = false;          // after damage
+  int64_t gap_stamp = AV_NOPTS_VALUE;  // of the first packet that was damaged, and not yet passed
 
-  // Gives the codec the next packet of the stream, or the end; counts what it refuses.
-  void Feed(int64_t* num_damaged);
+  // Gives the codec the next packet of the stream, or the end. False: it was damaged.
+  bool Feed();
+  // Whether the frame can be trusted: frames come some packets after theirs was fed, in order.
+  bool IsSound(const AVFrame& frame);
 };
 
 // What the container tells of the stream.

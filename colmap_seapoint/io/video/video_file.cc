@@ -38,16 +38,16 @@ AvPointer<AVFormatContext> OpenContainer(const std::filesystem::path& path) {
   const int code =
       avformat_open_input(&opened, ("file:" + path.string()).c_str(), nullptr, nullptr);
   if (code == AVERROR(ENOMEM)) throw std::bad_alloc();
-  if (code < 0) {
-    throw Error(path.string(),
-                "is no video that can be opened (" + AvErrorText(code) +
-                    "): it is something else, or the recording was cut off before its index was "
-                    "written",
-                "put it back into the camera, which may repair it, or take it out of the folder");
-  }
   AvPointer<AVFormatContext> format(opened);
-  avformat_find_stream_info(format.get(), nullptr);  // what it cannot find, the decoder may
-  return format;
+  // What it cannot find out, the decoder may.
+  if (format != nullptr) avformat_find_stream_info(format.get(), nullptr);
+  if (format != nullptr && format->nb_streams > 0) return format;
+  throw Error(path.string(),
+              "is no video that can be opened" +
+                  (code < 0 ? " (" + AvErrorText(code) + ")" : std::string()) +
+                  ": it is something else, or the recording was cut off before its index was "
+                  "written",
+              "put it back into the camera, which may repair it, or take it out of the folder");
 }
 
 AVStream* FindPictures(const std::filesystem::path& path, AVFormatContext* format) {
@@ -103,21 +103,35 @@ std::string SecondsText(double seconds) {
 
 }  // namespace
 
-void VideoFile::Decoder::Feed(int64_t* num_damaged) {
+bool VideoFile::Decoder::Feed() {
   int code = av_read_frame(format.get(), packet.get());
   while (code >= 0 && packet->stream_index != stream->index) {
     av_packet_unref(packet.get());
     code = av_read_frame(format.get(), packet.get());
   }
   if (code == AVERROR(ENOMEM)) throw std::bad_alloc();
+  if (code >= 0 && (packet->flags & AV_PKT_FLAG_CORRUPT) != 0) {
+    if (gap_stamp == AV_NOPTS_VALUE) gap_stamp = packet->pts;
+    av_packet_unref(packet.get());
+    return false;
+  }
   // A disk that fails ends the video too: what is missing then is said by Shortfall().
-  const bool is_whole = code >= 0 && (packet->flags & AV_PKT_FLAG_CORRUPT) == 0;
   const int sent = avcodec_send_packet(codec.get(), code < 0 ? nullptr : packet.get());
   av_packet_unref(packet.get());
   if (sent == AVERROR(ENOMEM)) throw std::bad_alloc();
-  if (code < 0 || (is_whole && sent >= 0)) return;
-  ++*num_damaged;
-  waits_for_key = true;
+  // The codec's errors come in the order of its frames, whatever the number of threads.
+  if (code >= 0 && sent < 0) waits_for_key = true;
+  return code < 0 || sent >= 0;
+}
+
+bool VideoFile::Decoder::IsSound(const AVFrame& frame) {
+  if (gap_stamp != AV_NOPTS_VALUE && frame.best_effort_timestamp >= gap_stamp) {
+    waits_for_key = true;
+    gap_stamp = AV_NOPTS_VALUE;
+  }
+  if (IsDamaged(frame)) waits_for_key = true;
+  if (frame.key_frame != 0 && !IsDamaged(frame)) waits_for_key = false;
+  return !waits_for_key;
 }
 
 VideoFile::VideoFile(const std::filesystem::path& path, int num_threads)
@@ -145,17 +159,18 @@ std::optional<VideoFrame> VideoFile::Next() {
     if (frame == nullptr) throw std::bad_alloc();
     const int code = avcodec_receive_frame(decoder_->codec.get(), frame.get());
     if (code == AVERROR(EAGAIN)) {
-      decoder_->Feed(&num_damaged_);
+      num_damaged_ += decoder_->Feed() ? 0 : 1;
     } else if (code == AVERROR_EOF) {
       return std::nullopt;
     } else if (code == AVERROR(ENOMEM)) {
       throw std::bad_alloc();
-    } else if (code < 0 || IsDamaged(*frame)) {
+    } else if (code < 0) {
       ++num_damaged_;
       decoder_->waits_for_key = true;
-    } else if (!decoder_->waits_for_key || frame->key_frame != 0) {
-      decoder_->waits_for_key = false;
+    } else if (decoder_->IsSound(*frame)) {
       return Timed(frame);
+    } else {
+      ++num_damaged_;
     }
   }
 }
@@ -190,7 +205,7 @@ std::string VideoFile::Shortfall() const {
            " only: the rest is damaged or cut off";
   }
   if (num_damaged_ == 0) return {};
-  return "is damaged in " + std::to_string(num_damaged_) + " places, which are passed over";
+  return "has " + std::to_string(num_damaged_) + " frames that are damaged: they are passed over";
 }
 
 }  // namespace colmap_seapoint
