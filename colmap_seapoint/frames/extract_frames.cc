@@ -58,7 +58,7 @@ ExtractedClip ExtractFrames(VideoFile* video, const std::string& label,
     WriteJpeg(images / name, chosen.frame.Color(),
               MakeExif(TimeOf(info, chosen.frame.seconds), info.maker, info.model));
   });
-  const auto total = static_cast<int64_t>(std::ceil(info.duration_seconds));
+  const auto total = static_cast<int64_t>(std::llround(info.duration_seconds));
   Progress progress("Frames of " + label + ", seconds", total);
   while (const auto frame = video->Next()) {
     chooser.Add(*frame);

@@ -31,6 +31,8 @@ using HeifPointer = std::unique_ptr<T, HeifDeleter>;
 
 void CheckHeif(const std::filesystem::path& path, const heif_error& error) {
   if (error.code == heif_error_Ok) return;
+  std::string message = error.message;
+  message.resize(message.find_last_not_of("\n ") + 1);
   if (error.code == heif_error_Memory_allocation_error &&
       error.subcode != heif_suberror_Security_limit_exceeded) {
     throw std::bad_alloc();
@@ -38,11 +40,9 @@ void CheckHeif(const std::filesystem::path& path, const heif_error& error) {
   if (error.code == heif_error_Unsupported_filetype ||
       error.code == heif_error_Unsupported_feature ||
       error.code == heif_error_Decoder_plugin_error) {
-    throw Error(path.string(),
-                "is HEIC that cannot be decoded here (" + std::string(error.message) + ")",
-                kConvert);
+    throw Error(path.string(), "is HEIC that cannot be decoded here (" + message + ")", kConvert);
   }
-  ThrowDamagedImage(path, error.message);
+  ThrowDamagedImage(path, message);
 }
 
 ExifBlock HeifExif(const heif_image_handle* handle) {
@@ -123,7 +123,9 @@ CameraPicture ReadRaw(const std::filesystem::path& path) {
   params.no_auto_bright = 1;
   params.user_flip = 0;
   params.output_bps = 8;
-  CheckRaw(path, raw->open_file(path.c_str()));
+  // Of a file that is no picture, libraw says that it cannot be read.
+  const int opened = raw->open_file(path.c_str());
+  CheckRaw(path, opened == LIBRAW_IO_ERROR ? LIBRAW_FILE_UNSUPPORTED : opened);
   const ImageSize promised =
       CheckImageSize(path, raw->imgdata.sizes.raw_width, raw->imgdata.sizes.raw_height);
   const MemoryShare share(kBytesPerPixel * static_cast<uint64_t>(promised.width) *
