@@ -1,4 +1,4 @@
-#include "colmap_seapoint/pipeline/take_in.h"
+#include "colmap_seapoint/pipeline/intake/take_in.h"
 
 #include <set>
 #include <string>
@@ -7,8 +7,8 @@
 
 #include "colmap_seapoint/io/image/image_folder.h"
 #include "colmap_seapoint/pictures/image_reader.h"
-#include "colmap_seapoint/pipeline/decode_copies.h"
-#include "colmap_seapoint/pipeline/take_frames.h"
+#include "colmap_seapoint/pipeline/intake/decode_copies.h"
+#include "colmap_seapoint/pipeline/intake/take_frames.h"
 
 namespace colmap_seapoint {
 namespace {

@@ -1,5 +1,5 @@
 // What a diver brings becomes a folder of pictures, once.
-#include "colmap_seapoint/pipeline/take_in.h"
+#include "colmap_seapoint/pipeline/intake/take_in.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "colmap_seapoint/pipeline/decode_copies.h"
+#include "colmap_seapoint/pipeline/intake/decode_copies.h"
 
 #include <algorithm>
 #include <map>

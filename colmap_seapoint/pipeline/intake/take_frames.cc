@@ -1,4 +1,4 @@
-#include "colmap_seapoint/pipeline/take_frames.h"
+#include "colmap_seapoint/pipeline/intake/take_frames.h"
 
 #include <cstdio>
 #include <optional>
@@ -8,7 +8,7 @@
 #include "colmap_seapoint/frames/extract_frames.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/content_hash.h"
-#include "colmap_seapoint/pipeline/take_in.h"
+#include "colmap_seapoint/pipeline/intake/take_in.h"
 
 namespace colmap_seapoint {
 
