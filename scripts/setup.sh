@@ -9,7 +9,8 @@ packages=(
   build-essential cmake ninja-build
   colmap
   libopencv-dev libeigen3-dev libceres-dev libsqlite3-dev libboost-program-options-dev
-  libjpeg-dev libpng-dev libtiff-dev libwebp-dev libexiv2-dev liblensfun-dev liblensfun-data-v1 nlohmann-json3-dev libnanoflann-dev libproj-dev
+  libjpeg-dev libpng-dev libtiff-dev libwebp-dev libheif-dev libraw-dev libexiv2-dev liblensfun-dev liblensfun-data-v1
+  libavformat-dev libavcodec-dev libavutil-dev libswscale-dev nlohmann-json3-dev libnanoflann-dev libproj-dev
   libhwy-dev libxxhash-dev ccache pkg-config libgtest-dev sqlite3 file
 )
 case ${1:-} in

@@ -13,6 +13,7 @@ colmap_seapoint/io/files        colmap_seapoint/base colmap_seapoint/system
 colmap_seapoint/io/navigation   colmap_seapoint/base colmap_seapoint/io/files
 colmap_seapoint/io/outputs      colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files
 colmap_seapoint/io/image        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files
+colmap_seapoint/io/video        colmap_seapoint/base colmap_seapoint/io/files
 colmap_seapoint/io/cloud        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files
 colmap_seapoint/io/colmap       colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files colmap_seapoint/io/image
 feature/kernels                 colmap_seapoint/base
@@ -41,10 +42,12 @@ colmap_seapoint/reposing        colmap_seapoint/base colmap_seapoint/io/colmap
 colmap_seapoint/mapping         colmap_seapoint/base colmap_seapoint/tracks colmap_seapoint/joining colmap_seapoint/reposing colmap_seapoint/lens colmap_seapoint/adjustment colmap_seapoint/adjustment/equations colmap_seapoint/remeasuring feature/remeasuring colmap_seapoint/io/files colmap_seapoint/io/colmap colmap_seapoint/io/image
 colmap_seapoint/cameras         colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/image
 colmap_seapoint/pictures        colmap_seapoint/base colmap_seapoint/cameras colmap_seapoint/io/* feature feature/* densify densify/*
+colmap_seapoint/frames          colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/image colmap_seapoint/io/video feature feature/*
 colmap_seapoint/pairing         colmap_seapoint/base colmap_seapoint/io/* feature feature/*
 colmap_seapoint/remeasuring     colmap_seapoint/base feature/remeasuring
 colmap_seapoint/report          colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/georeference densify densify/*
-colmap_seapoint/pipeline        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/georeference colmap_seapoint/navigation colmap_seapoint/mapping colmap_seapoint/cameras colmap_seapoint/pictures colmap_seapoint/pairing colmap_seapoint/report feature feature/* densify densify/*
+colmap_seapoint/pipeline/intake colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/pictures colmap_seapoint/frames colmap_seapoint/pipeline
+colmap_seapoint/pipeline        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/georeference colmap_seapoint/navigation colmap_seapoint/mapping colmap_seapoint/cameras colmap_seapoint/pictures colmap_seapoint/frames colmap_seapoint/pairing colmap_seapoint/report colmap_seapoint/pipeline/intake feature feature/* densify densify/*
 colmap_seapoint/cli             colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files colmap_seapoint/pipeline
 colmap_seapoint                 colmap_seapoint/base colmap_seapoint/system colmap_seapoint/cli
 END
@@ -83,6 +86,7 @@ only_in "Ceres solves in georeference and two-view verification only" '#include 
 only_in "children are started by mapping only" 'RunSubprocess\(|io/files/subprocess\.h' \
   'colmap_seapoint/(mapping|io/files)/'
 only_in "SQLite is io's" '#include <sqlite3\.h>|io/files/sqlite\.h' 'colmap_seapoint/io/(files|colmap)/'
+only_in "Videos are io/video's" '#include <lib(av|sw)' 'colmap_seapoint/io/video/'
 only_in "OpenCV's decoders are io/image's" '#include <opencv2/imgcodecs' 'colmap_seapoint/io/image/'
 only_in "only cli prints results, only base/progress prints the log" \
   'std::(cout|cerr|clog)|[^sn]printf\(|(^|[^a-z_])puts\(' \

@@ -161,7 +161,44 @@ void WarnOfTurnedPictures(const std::vector<ReadablePicture>& pictures) {
              first->name + " is the first): the pixels are used as they are stored");
 }
 
+// "csv, txt"; of files without one, their names.
+std::string ExtensionsOf(const std::vector<std::string>& names) {
+  std::set<std::string> extensions;
+  for (const std::string& name : names) {
+    const std::filesystem::path path(name);
+    const std::string extension = path.extension().string();
+    extensions.insert(extension.empty() ? path.filename().string() : extension.substr(1));
+  }
+  std::string text;
+  for (const std::string& extension : extensions) {
+    text += (text.empty() ? "" : ", ") + extension;
+  }
+  return text;
+}
+
 }  // namespace
+
+void LeaveOutOtherFiles(const FolderListing& listing, RunReport* report) {
+  for (const std::string& name : listing.camera_pictures) {
+    LeaveOut(name,
+             "COLMAP reads no HEIC and RAW: let automatic_reconstructor decode it, or convert it "
+             "to JPEG",
+             report);
+  }
+  for (const std::string& name : listing.videos) {
+    LeaveOut(name,
+             "it is a video: give it to automatic_reconstructor as an --image_path of its own",
+             report);
+  }
+  if (!listing.twins.empty()) {
+    LogInfo(std::to_string(listing.twins.size()) + " files (" + ExtensionsOf(listing.twins) +
+            ") show the same as a picture of their name, which is used");
+  }
+  if (!listing.others.empty()) {
+    LogInfo(std::to_string(listing.others.size()) + " other files (" +
+            ExtensionsOf(listing.others) + ") are no pictures");
+  }
+}
 
 std::vector<std::string> ListPictures(const std::filesystem::path& image_path,
                                       const std::string& image_list_path, RunReport* report) {
@@ -171,6 +208,7 @@ std::vector<std::string> ListPictures(const std::filesystem::path& image_path,
   }
   std::vector<std::string> listed =
       image_list_path.empty() ? ListImages(image_path) : ReadImageList(image_list_path);
+  if (image_list_path.empty()) LeaveOutOtherFiles(ListFolder(image_path), report);
   std::sort(listed.begin(), listed.end());
   listed.erase(std::unique(listed.begin(), listed.end()), listed.end());
   report->images_in = static_cast<int64_t>(listed.size());

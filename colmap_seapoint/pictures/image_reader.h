@@ -9,13 +9,18 @@
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/files/run_report.h"
 #include "colmap_seapoint/io/image/image_file.h"
+#include "colmap_seapoint/io/image/image_folder.h"
 #include "colmap_seapoint/pictures/image_reader_options.h"
 
 namespace colmap_seapoint {
 
+// Leaves out what shows something, but is no picture that COLMAP reads: HEIC and RAW, videos, each
+// with what to do; tells in a line what else lies there.
+void LeaveOutOtherFiles(const FolderListing& listing, RunReport* report);
+
 // Names below `image_path`, sorted bytewise, each once: all pictures, or those of the list where
-// one is given. Names that could lead out of the folder are left out. Throws Error when there is no
-// such folder or list, or no name in it.
+// one is given. Names that could lead out of the folder are left out, and LeaveOutOtherFiles().
+// Throws Error when there is no such folder or list, or no name in it.
 std::vector<std::string> ListPictures(const std::filesystem::path& image_path,
                                       const std::string& image_list_path, RunReport* report);
 

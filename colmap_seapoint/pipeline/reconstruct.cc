@@ -22,6 +22,7 @@
 #include "colmap_seapoint/pictures/exif_positions.h"
 #include "colmap_seapoint/pipeline/densify_models.h"
 #include "colmap_seapoint/pipeline/extract.h"
+#include "colmap_seapoint/pipeline/intake/take_in.h"
 #include "colmap_seapoint/pipeline/map.h"
 #include "colmap_seapoint/pipeline/match.h"
 #include "colmap_seapoint/pipeline/scale_models.h"
@@ -284,13 +285,15 @@ CommandResult WriteReport(const Workspace& workspace, const std::vector<ModelSum
 CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& given) {
   given.Check();
   const Options options = WithRigsCameras(given);
-  const Workspace workspace(options.image_path, options.workspace_path);
-  const MappingPlan plan = PlanMapping(options, workspace);
+  Workspace workspace(options.image_path, options.workspace_path);
+  MappingPlan plan = PlanMapping(options, workspace);
   WorkspaceState state(workspace.root, workspace.Names());
   CheckWritableDir(workspace.report);
   RunReport report = StartReport("automatic_reconstructor", options, options.run);
   report.options.insert(report.options.end(), options.mapper.begin(), options.mapper.end());
 
+  TakeInPictures({options.frames, options.run.num_threads}, &workspace, &state, &report);
+  plan.job.image_path = workspace.images;
   const PictureSet pictures = ReadPictureSet(ExtractorOptions(options, workspace));
   CheckScaleNames(options.scale, NamesOf(pictures));
   const Stage begin = DatabaseStage(options, pictures.readable);

@@ -10,7 +10,9 @@
 namespace colmap_seapoint {
 
 void AutomaticReconstructorOptions::Bind(OptionTable* table) {
-  table->AddRequired("image_path", &image_path, "folder of the pictures, sub-folders included");
+  table->AddRequired("image_path", &image_path,
+                     "folder of the pictures (JPEG, PNG, TIFF, HEIC, RAW), sub-folders included; "
+                     "or a video, or a folder of clips");
   table->AddRequired("workspace_path", &workspace_path,
                      "folder for database.db, sparse/, dense/ and report/; created when missing");
   table->Add("colmap_path", &colmap_path, "the colmap program: a path, or a name on PATH", "ours");
@@ -38,6 +40,7 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
   table->Add("rig", &rig, kRigHelp, "paper 4");
   table->Add("mask_path", &reader.mask_path, "the same as --ImageReader.mask_path", "COLMAP");
   scale.Bind(table);
+  frames.Bind(table);
   reader.Bind(table);
   extraction.Bind(table);
   pairs.Bind(table);
@@ -68,8 +71,8 @@ void AutomaticReconstructorOptions::Check() const {
        {reader.Check(), extraction.Check(), densification.Check(), CheckRig(rig), scale.Check()}) {
     if (!problem.empty()) throw UsageError(problem);
   }
-  if (!std::filesystem::is_directory(image_path)) {
-    throw Error(image_path, "there is no such folder", "check --image_path");
+  if (!std::filesystem::exists(image_path)) {
+    throw Error(image_path, "there is no such folder or video", "check --image_path");
   }
   CheckRigFolders(rig, image_path);
   CheckScaleTables(scale);

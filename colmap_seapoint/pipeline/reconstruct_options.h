@@ -6,6 +6,7 @@
 
 #include "colmap_seapoint/base/options.h"
 #include "colmap_seapoint/base/run_options.h"
+#include "colmap_seapoint/frames/frame_options.h"
 #include "colmap_seapoint/georeference/scale_sources.h"
 #include "colmap_seapoint/pairing/pair_options.h"
 #include "colmap_seapoint/pictures/image_reader_options.h"
@@ -19,7 +20,7 @@ namespace colmap_seapoint {
 inline constexpr size_t kMaxImagesForAllPairs = 50;
 
 struct AutomaticReconstructorOptions {
-  std::string image_path;              // folder, sub-folders included
+  std::string image_path;              // folder, sub-folders included; or a video
   std::string workspace_path;          // folder, created when missing
   std::string colmap_path = "colmap";  // a path, or a name on PATH
   double colmap_timeout = 0;           // seconds that one run of it may take; 0 = no limit
@@ -29,6 +30,7 @@ struct AutomaticReconstructorOptions {
   bool join_models = true;
   std::string rig;
   ScaleSources scale;
+  FrameSelectionOptions frames;
   ImageReaderOptions reader;
   SeaPointExtractionOptions extraction;
   SequentialPairOptions pairs;

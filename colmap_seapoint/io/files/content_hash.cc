@@ -2,6 +2,7 @@
 
 #include <xxhash.h>
 
+#include <algorithm>
 #include <cinttypes>
 #include <cstdint>
 #include <cstdio>
@@ -59,6 +60,26 @@ std::string HashFile(const std::filesystem::path& path) {
   const auto buffer_bytes = static_cast<std::streamsize>(buffer.size());
   while (const std::streamsize size = file.rdbuf()->sgetn(buffer.data(), buffer_bytes)) {
     hash.Add(buffer.data(), static_cast<size_t>(size));
+  }
+  return hash.Text();
+}
+
+std::string HashSamplesOfFile(const std::filesystem::path& path) {
+  constexpr uint64_t kBlockBytes = 1 << 20, kNumBlocks = 64;
+  InputStream file(path);
+  const uint64_t size = std::filesystem::file_size(path);
+  ContentHash hash;
+  hash.Add(&size, sizeof(size));
+  const uint64_t whole_blocks = (size + kBlockBytes - 1) / kBlockBytes;
+  const uint64_t num_blocks = std::min(whole_blocks, kNumBlocks);
+  std::vector<char> block(kBlockBytes);
+  for (uint64_t i = 0; i < num_blocks; ++i) {
+    const uint64_t at =
+        num_blocks == whole_blocks ? i * kBlockBytes : (size - kBlockBytes) / (kNumBlocks - 1) * i;
+    file.seekg(static_cast<std::streamoff>(at));
+    const std::streamsize read =
+        file.rdbuf()->sgetn(block.data(), static_cast<std::streamsize>(block.size()));
+    hash.Add(block.data(), static_cast<size_t>(read));
   }
   return hash.Text();
 }

@@ -32,5 +32,8 @@ std::string HashText(const std::string& text);
 bool IsHashOf(const std::string& hash, const void* data, size_t size);
 // Throws Error for a file that cannot be read to its end.
 std::string HashFile(const std::filesystem::path& path);
+// For files of many gigabytes: of the size, and of up to 64 blocks of 1 MiB spread evenly from the
+// first to the last; of a file of 64 MiB and less, that is all of it.
+std::string HashSamplesOfFile(const std::filesystem::path& path);
 
 }  // namespace colmap_seapoint

@@ -6,7 +6,6 @@
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <set>
 #include <system_error>
 
 #include "colmap_seapoint/base/error.h"
@@ -15,6 +14,7 @@
 #include "colmap_seapoint/io/files/input_stream.h"
 #include "colmap_seapoint/io/image/image_codecs.h"
 #include "colmap_seapoint/io/image/image_exif.h"
+#include "colmap_seapoint/io/image/image_folder.h"
 #include "colmap_seapoint/io/image/image_limits.h"
 #include "colmap_seapoint/system/memory_budget.h"
 #include "colmap_seapoint/system/memory_limit.h"
@@ -32,30 +32,6 @@ std::string LowerExtension(const std::filesystem::path& path) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   }
   return extension;
-}
-
-bool HasImageExtension(const std::filesystem::path& path) {
-  static const std::set<std::string> kExtensions = {".jpg", ".jpeg", ".png", ".tif", ".tiff",
-                                                    ".bmp", ".webp", ".ppm", ".pgm", ".jp2"};
-  return kExtensions.count(LowerExtension(path)) > 0;
-}
-
-// Names of all pictures below `folder`, unsorted. Links to files are followed, links to folders
-// are not: they may go in circles.
-std::vector<std::string> FindImages(const std::filesystem::path& folder) {
-  std::vector<std::string> names;
-  std::filesystem::recursive_directory_iterator entry(folder), end;
-  for (; entry != end; ++entry) {
-    const std::filesystem::path& path = entry->path();
-    std::error_code ignored;
-    if (path.filename().string().front() == '.') {
-      if (entry->is_directory(ignored)) entry.disable_recursion_pending();
-      continue;
-    }
-    if (!HasImageExtension(path) || !entry->is_regular_file(ignored)) continue;
-    names.push_back(path.lexically_relative(folder).generic_string());
-  }
-  return names;
 }
 
 // 1 or 3 channels.
@@ -213,30 +189,30 @@ ImageFormat DetectImageFormat(const ImageSource& source) {
     throw Error(path.string(), "is JPEG 2000, which no camera writes and is not decoded",
                 "convert it to JPEG, PNG or TIFF, or take it out of the folder");
   }
+  if (size == sizeof(head) && std::memcmp(head + 4, "ftyphe", 6) == 0) {
+    throw Error(path.string(), "is HEIC by its content", "rename it to .heic");
+  }
   if (head[0] == 'P' && head[1] >= '1' && head[1] <= '6') return ImageFormat::kPnm;
   throw Error(path.string(), "is no picture of a known format",
               "convert it to JPEG, PNG or TIFF, or take it out of the folder");
 }
 
 std::vector<std::string> ListImages(const std::filesystem::path& image_path) {
-  std::error_code error;
-  if (!std::filesystem::is_directory(image_path, error)) {
-    throw Error(image_path.string(), "there is no such folder", "check --image_path");
+  const FolderListing listing = ListFolder(image_path);
+  if (!listing.pictures.empty()) return listing.pictures;
+  const std::string kinds = "holds no picture (jpg png tif bmp webp ppm pgm jp2)";
+  if (!listing.camera_pictures.empty()) {
+    throw Error(
+        image_path.string(),
+        kinds + ", but " + std::to_string(listing.camera_pictures.size()) + " of HEIC or RAW",
+        "let automatic_reconstructor take it, which decodes them, or convert them to JPEG");
   }
-  std::vector<std::string> names;
-  try {
-    names = FindImages(image_path);
-  } catch (const std::filesystem::filesystem_error& failure) {
-    throw Error(failure.path1().empty() ? image_path.string() : failure.path1().string(),
-                "cannot be read (" + failure.code().message() + ")",
-                "check the folder's permissions");
+  if (!listing.videos.empty()) {
+    throw Error(image_path.string(),
+                kinds + ", but " + std::to_string(listing.videos.size()) + " videos",
+                "let automatic_reconstructor take it, which chooses their frames");
   }
-  if (names.empty()) {
-    throw Error(image_path.string(), "holds no picture (jpg png tif bmp webp ppm pgm jp2)",
-                "check --image_path");
-  }
-  std::sort(names.begin(), names.end());
-  return names;
+  throw Error(image_path.string(), kinds, "check --image_path");
 }
 
 std::vector<std::string> ReadImageList(const std::filesystem::path& list_path) {

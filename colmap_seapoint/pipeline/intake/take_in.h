@@ -1,0 +1,33 @@
+// The first stage of automatic_reconstructor: what a diver brings -> a folder of pictures that
+// COLMAP and we read.
+#pragma once
+
+#include "colmap_seapoint/frames/frame_options.h"
+#include "colmap_seapoint/io/files/run_report.h"
+#include "colmap_seapoint/pipeline/stage_runner.h"
+#include "colmap_seapoint/pipeline/workspace.h"
+
+namespace colmap_seapoint {
+
+// Raise it whenever the same video and options give other frames than before.
+inline constexpr char kFrameSelectionVersion[] = "1";
+
+struct TakeInOptions {
+  FrameSelectionOptions frames;
+  int num_threads = -1;
+};
+
+// Looks at workspace->images, which is what the user gave:
+//   a folder of pictures   is left as it is;
+//   one with HEIC or RAW   becomes <workspace>/images: a JPEG <name>.jpg of each such picture, with
+//                          its EXIF, and a link to each other one (a copy where the disk knows no
+//                          links);
+//   a video, or a folder   becomes <workspace>/images/<recording>/<clip>_<frame>.jpg, the frames
+//   of clips alone         that a reconstruction needs, and frames.csv.
+// workspace->images is that folder then. What an earlier run made of the same files is not made
+// again; what it made of others is removed. What is not used is named in the report. Throws Error
+// when nothing can be used.
+void TakeInPictures(const TakeInOptions& options, Workspace* workspace, WorkspaceState* state,
+                    RunReport* report);
+
+}  // namespace colmap_seapoint
