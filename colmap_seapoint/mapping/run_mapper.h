@@ -40,7 +40,7 @@ struct MapperJob {
   MapperOptions later_rounds;
   LensRule lens = LensRule::kFind;
   bool adjusts_principal_point = true;
-  bool joins_models = true;  // join_rounds.h
+  bool joins_models = true;           // join_rounds.h
   int num_threads = 1;                // of our adjustment; -1 = all cores; never changes a result
   std::vector<std::string> pictures;  // those that have a verified pair
 };

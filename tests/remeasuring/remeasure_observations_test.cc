@@ -228,7 +228,7 @@ TEST(RemeasureObservations, LeavesWhatAMaskHides) {
   const Remeasurement all = Remeasure(before);
   const Remeasurement masked = RemeasureObservations(options, before, ReadPicture);
   ExpectConsistent(masked.model);
-  EXPECT_TRUE(masked.unreadable.empty());
+  EXPECT_TRUE(masked.of_other_size.empty());
   EXPECT_GT(masked.counts.unmeasured, all.counts.unmeasured);
   const double middle = TheWorld().Model().cameras.begin()->second.width / 2.0;
   const PosedImage& image = masked.model.images[1];

@@ -29,8 +29,8 @@ struct FolderListing {
 };
 
 // Of the folder and all below it; links to folders are not followed, since they may go in circles.
-// Pictures with names that IsSafeImageName refuses are among the pictures. Throws Error when there is
-// no such folder, or it cannot be read.
+// Pictures with names that IsSafeImageName refuses are among the pictures. Throws Error when there
+// is no such folder, or it cannot be read.
 FolderListing ListFolder(const std::filesystem::path& folder);
 
 }  // namespace colmap_seapoint
