@@ -32,7 +32,6 @@ bool HasGps(const PictureRecords& records) {
 }
 
 void Validate(const ModelScalerOptions& options, const PictureRecords& records) {
-  CheckOutputPaths(options);
   const ScaleSources& sources = options.sources;
   for (const std::string& problem : {sources.Check(), CheckRig(options.rig)}) {
     if (!problem.empty()) throw UsageError(problem);
@@ -219,6 +218,7 @@ ScaledModel ScaleModel(const ModelScalerOptions& options, const PictureRecords& 
 }
 
 CommandResult RunModelScaler(const ModelScalerOptions& options) {
+  CheckOutputPaths(options);
   PictureRecords records;
   if (!options.sources.Any() || !options.sources.nav.empty()) records = ReadRecords(options);
   const ScaledModel scaled = ScaleModel(options, records);
