@@ -63,7 +63,7 @@ PortCamera::PortCamera(const PortOptions& port, const Camera& in_water)
   const double tilt = port.tilt_deg * kRadPerDeg;
   if (port.kind == PortKind::kFlat) axis_ = {std::sin(tilt), 0, std::cos(tilt)};
   if (port.kind == PortKind::kDome && centre_.norm() > 0) axis_ = centre_.normalized();
-  if (HasPort()) MeasureReach();
+  MeasureReach();
 }
 
 // By the rays of the picture's border; without a bound where some of it is black.
@@ -81,7 +81,8 @@ void PortCamera::MeasureReach() {
 }
 
 bool PortCamera::IsFarOutside(const Vector3d& point) const {
-  return HasPort() && point.head<2>().norm() > reach_ + slope_ * std::max(0.0, point.z());
+  const double reach = reach_ + slope_ * std::max(0.0, point.z());
+  return point.head<2>().squaredNorm() > reach * reach;
 }
 
 std::optional<WaterRay> PortCamera::Refract(const Vector3d& in_air) const {
