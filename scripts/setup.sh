@@ -10,6 +10,7 @@ packages=(
   colmap
   libopencv-dev libeigen3-dev libceres-dev libsqlite3-dev libboost-program-options-dev
   libjpeg-dev libpng-dev libtiff-dev libwebp-dev libexiv2-dev nlohmann-json3-dev libnanoflann-dev libproj-dev
+  libapriltag-dev libhpdf-dev poppler-utils
   libhwy-dev libxxhash-dev ccache pkg-config libgtest-dev sqlite3 file
 )
 case ${1:-} in

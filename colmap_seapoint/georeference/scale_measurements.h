@@ -1,5 +1,5 @@
 // What is known of a model's size and place: scale bars, positions of its pictures, the spacing of
-// a rig. The measurements that the sources give for one model.
+// a rig, coded markers. The measurements that the sources give for one model.
 #pragma once
 
 #include <string>
@@ -9,8 +9,10 @@
 #include "colmap_seapoint/base/stereo_rig.h"
 #include "colmap_seapoint/georeference/estimate_similarity.h"
 #include "colmap_seapoint/georeference/scale_sources.h"
+#include "colmap_seapoint/io/files/markers_csv.h"
 #include "colmap_seapoint/io/files/model_units.h"
 #include "colmap_seapoint/io/files/run_report.h"
+#include "colmap_seapoint/markers/marker_name.h"
 
 namespace colmap_seapoint {
 
@@ -31,12 +33,25 @@ struct ScaleMeasurements {
 // Reads all tables, so that a bad one throws its Error before hours of work, not after them.
 void CheckScaleTables(const ScaleSources& sources);
 
+// The coded markers that the bars' ends name, sorted. Throws Error as CheckScaleTables.
+std::vector<MarkerName> MarkersOfBars(const ScaleSources& sources);
+
+// Which markers have to be looked for in the pictures; empty: none.
+std::vector<MarkerFamily> FamiliesToFind(const ScaleSources& sources);
+
+// One line for each bar's marker that fewer than two pictures of all show, so that it is known
+// before hours of mapping: "scale bars: tag36h11:12 is found in no picture; found: ...".
+std::vector<std::string> MissingMarkers(const ScaleSources& sources,
+                                        const std::vector<MarkerSighting>& sightings);
+
 // Reads the tables, triangulates the targets and finds the pictures. Pictures of the tables that
 // the model does not hold (they may be in other models) are named once, on stderr; bars that do not
-// have both ends in the model are left out by name. `rig` is by image_idx of `model`. Throws Error
-// for a bad table, a point:ID that is not there, a mark outside its picture, a rig without
-// simultaneous pictures, and when nothing of the sources is in the model.
+// have both ends in the model are left out by name. `rig` is by image_idx of `model`, `sightings`
+// are the coded markers found in the pictures (of any model). Throws Error for a bad table, a
+// point:ID that is not there, a mark outside its picture, a rig without simultaneous pictures, and
+// when nothing of the sources is in the model.
 ScaleMeasurements GatherMeasurements(const SparseModel& model, const ScaleSources& sources,
+                                     const std::vector<MarkerSighting>& sightings,
                                      const StereoRig& rig, int seed, RunReport* report);
 
 }  // namespace colmap_seapoint

@@ -14,6 +14,7 @@
 #include "colmap_seapoint/mapping/second_chance.h"
 #include "colmap_seapoint/pipeline/densify_models.h"
 #include "colmap_seapoint/pipeline/extract.h"
+#include "colmap_seapoint/pipeline/find_markers.h"
 #include "colmap_seapoint/pipeline/map.h"
 #include "colmap_seapoint/pipeline/match.h"
 #include "colmap_seapoint/pipeline/scale_models.h"
@@ -159,6 +160,15 @@ std::vector<ModelSummary> ReadModels(const std::vector<fs::path>& paths, RunRepo
   return models;
 }
 
+// Before the hours of mapping, so that a marker that no picture shows is known by then.
+void FindMarkersOfDive(const Options& options, const Workspace& workspace, WorkspaceState* state,
+                       RunReport* report) {
+  const MarkerSearch search = {FamiliesToFind(options.scale), report->inputs,
+                               options.run.num_threads};
+  const auto sightings = FindMarkersOnce(search, workspace, state, report);
+  for (const std::string& line : MissingMarkers(options.scale, sightings)) LogWarning(line);
+}
+
 // Into sparse_scaled/<k>: the mapper's own models stay as they are.
 void ScaleModels(const Options& options, const Workspace& workspace,
                  const std::string& mapper_fingerprint, WorkspaceState* state,
@@ -167,6 +177,7 @@ void ScaleModels(const Options& options, const Workspace& workspace,
   scaler.image_path = workspace.images.string();
   scaler.rig = options.rig;
   scaler.sources = options.scale;
+  if (!FamiliesToFind(options.scale).empty()) scaler.markers_path = workspace.markers.string();
   scaler.run = options.run;
   AddPart(ScaleAllModels(scaler, workspace, mapper_fingerprint, state, models), report);
   for (const ModelSummary& model : *models) {
@@ -201,6 +212,7 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& opt
       OpenWorkspaceDatabase(workspace.database, pictures.readable, options.reader, begin, &state);
   ExtractAndMatch(options, workspace, pictures, SecondChanceStage(options, begin), &database,
                   &state, &report);
+  FindMarkersOfDive(options, workspace, &state, &report);
   const Mapping mapping = MapPictures(plan, database, &state);
   report.stages.insert(report.stages.end(), mapping.seconds.begin(), mapping.seconds.end());
   std::vector<ModelSummary> models = ReadModels(mapping.models, &report);

@@ -1,7 +1,9 @@
 #include "colmap_seapoint/pipeline/scale.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <vector>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
@@ -13,6 +15,7 @@
 #include "colmap_seapoint/io/outputs/same_file.h"
 #include "colmap_seapoint/pictures/read_rig.h"
 #include "colmap_seapoint/pipeline/earlier_outputs.h"
+#include "colmap_seapoint/pipeline/find_markers.h"
 #include "colmap_seapoint/pipeline/output_paths.h"
 #include "colmap_seapoint/report/scale_report.h"
 
@@ -33,8 +36,8 @@ void Validate(const ModelScalerOptions& options) {
   }
   if (!sources.Any()) {
     throw UsageError(
-        "nothing says how large the model is: give --scale_bars_path, --positions_path or "
-        "--rig_spacing");
+        "nothing says how large the model is: give --scale_bars_path, --positions_path, "
+        "--marker_size or --rig_spacing");
   }
   if (NamesFolders(options.rig) && !fs::is_directory(options.image_path)) {
     throw UsageError("rig is '" + options.rig + "', it needs image_path: the folder of its two");
@@ -44,6 +47,20 @@ void Validate(const ModelScalerOptions& options) {
                  fs::path(options.output_path) / fs::path(options.cloud_path).filename())) {
     throw UsageError(
         "cloud_path lies in output_path: the cloud would be lost; name another folder");
+  }
+}
+
+// Coded markers need pictures, or the table of what was found in them.
+void CheckMarkerSource(const ModelScalerOptions& options) {
+  if (FamiliesToFind(options.sources).empty()) return;
+  if (!options.markers_path.empty()) {
+    ReadMarkersCsv(options.markers_path);
+  } else if (options.image_path.empty()) {
+    throw UsageError(
+        "coded markers are to be found: give --image_path, the folder of the pictures, or "
+        "--markers_path, the table of marker_finder");
+  } else if (!fs::is_directory(options.image_path)) {
+    throw Error(options.image_path, "there is no such folder", "check --image_path");
   }
 }
 
@@ -61,10 +78,23 @@ void ClaimOutputs(const ModelScalerOptions& options, OutputFolder* folder) {
                    "choose another --report_path, or remove the file");
 }
 
+// Of every picture of the dive: those of other models tell why a bar is not in this one.
+std::vector<MarkerSighting> SightingsFor(const ModelScalerOptions& options,
+                                         const SparseModel& model, RunReport* report) {
+  const std::vector<MarkerFamily> families = FamiliesToFind(options.sources);
+  if (families.empty()) return {};
+  if (!options.markers_path.empty()) return ReadMarkersCsv(options.markers_path);
+  std::vector<std::string> names;
+  for (const PosedImage& image : model.images) names.push_back(image.name);
+  std::sort(names.begin(), names.end());
+  return FindMarkers(options.image_path, names, families, options.run.num_threads, report);
+}
+
 void DescribeInputs(const ModelScalerOptions& options, RunReport* report) {
   const ScaleSources& sources = options.sources;
-  for (const std::string& path : {sources.scale_bars_path, sources.targets_path,
-                                  sources.positions_path, options.cloud_path}) {
+  for (const std::string& path :
+       {sources.scale_bars_path, sources.targets_path, sources.positions_path, options.markers_path,
+        options.cloud_path}) {
     if (!path.empty()) report->inputs.push_back(DescribeInput(path, path));
   }
 }
@@ -101,8 +131,12 @@ void ModelScalerOptions::Bind(OptionTable* table) {
              "cloud in the model's frame (PLY), scaled into output_path; empty = none", "ours");
   sources.Bind(table);
   table->Add("rig", &rig, kRigHelp, "paper 4");
-  table->Add("image_path", &image_path, "folder of the pictures; needed by --rig LEFT,RIGHT only",
-             "COLMAP");
+  table->Add("image_path", &image_path,
+             "folder of the pictures; needed by coded markers and --rig LEFT,RIGHT only", "COLMAP");
+  table->Add("markers_path", &markers_path,
+             "coded markers of the pictures as marker_finder has written them; empty = they are "
+             "looked for in image_path where a scale bar or marker_size needs them",
+             "ours");
   table->Add("report_path", &report_path,
              "CSV to write, one row a measurement with its residual; empty = none", "ours");
   run.Bind(table);
@@ -113,6 +147,7 @@ void ModelScalerOptions::Bind(OptionTable* table) {
 ScaledModel ScaleModel(const ModelScalerOptions& options) {
   Validate(options);
   CheckScaleTables(options.sources);
+  CheckMarkerSource(options);
   OutputFolder folder(options.output_path, "--output_path");
   ClaimOutputs(options, &folder);
   ScaledModel scaled;
@@ -127,7 +162,8 @@ ScaledModel ScaleModel(const ModelScalerOptions& options) {
                               ? ReadRig(options.rig, options.image_path, options.input_path, model)
                               : StereoRig();
     ScaleMeasurements measurements =
-        GatherMeasurements(model, options.sources, rig, options.run.random_seed, &report);
+        GatherMeasurements(model, options.sources, SightingsFor(options, model, &report), rig,
+                           options.run.random_seed, &report);
     const SimilarityEstimate estimate = EstimateSimilarity(measurements.problem);
     if (!estimate.problem.empty()) {
       throw Error(options.input_path, "cannot be scaled: " + estimate.problem,

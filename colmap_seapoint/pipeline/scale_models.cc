@@ -22,8 +22,8 @@ std::string Inputs(const ModelScalerOptions& scaler, const std::string& mapper_f
   std::string text = mapper_fingerprint + "," + scaler.rig + "," +
                      std::to_string(scaler.run.random_seed) + "," +
                      OptionsFingerprint(OptionValues(sources));
-  for (const std::string& path :
-       {sources.scale_bars_path, sources.targets_path, sources.positions_path}) {
+  for (const std::string& path : {sources.scale_bars_path, sources.targets_path,
+                                  sources.positions_path, scaler.markers_path}) {
     if (!path.empty()) text += DescribeInput(path, path).hash + ",";
   }
   return text;

@@ -44,7 +44,7 @@ set(exported_targets
   seapoint_feature_matching seapoint_feature_retrieval seapoint_feature_remeasuring seapoint_feature
   seapoint_densify_kernels seapoint_densify_match seapoint_densify_overlap seapoint_densify_cloud
   seapoint_densify_sequence seapoint_densify_maps seapoint_densify
-  seapoint_georeference seapoint_compare seapoint_tracks seapoint_adjustment seapoint_remeasuring
+  seapoint_markers seapoint_georeference seapoint_compare seapoint_tracks seapoint_adjustment seapoint_remeasuring
   seapoint_mapping seapoint_pictures seapoint_pairing
   seapoint_report seapoint_pipeline)
 foreach(target IN LISTS exported_targets)
@@ -101,5 +101,5 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
   "libeigen3-dev, libopencv-dev (>= 4.5), libceres-dev (>= 2.0), libhwy-dev (>= 1.0.3), pkg-config, \
 libsqlite3-dev, libproj-dev, libxxhash-dev, libjpeg-dev, libpng-dev, libtiff-dev, libwebp-dev, \
-libexiv2-dev")
+libexiv2-dev, libapriltag-dev")
 include(CPack)
