@@ -4,6 +4,7 @@
 #include "colmap_seapoint/pipeline/extract.h"
 #include "colmap_seapoint/pipeline/find_markers.h"
 #include "colmap_seapoint/pipeline/match.h"
+#include "colmap_seapoint/pipeline/print_markers.h"
 #include "colmap_seapoint/pipeline/reconstruct.h"
 #include "colmap_seapoint/pipeline/scale.h"
 
@@ -21,6 +22,8 @@ std::vector<Command> AllCommands() {
       MakeCommand("spatial_matcher", "match each picture with those taken near it",
                   RunSpatialMatcher),
       MakeCommand("marker_finder", "find coded markers in pictures, into a table", RunMarkerFinder),
+      MakeCommand("marker_sheet", "coded markers and scale bars to print, as a PDF",
+                  RunPrintMarkers),
       MakeCommand("model_scaler", "COLMAP model and cloud -> metres, from scale bars and positions",
                   RunModelScaler),
       MakeCommand("partial_densifier", "COLMAP model and pictures -> one dense cloud",

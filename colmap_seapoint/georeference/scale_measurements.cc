@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/median.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/base/run_options.h"
 #include "colmap_seapoint/georeference/marker_places.h"
+#include "colmap_seapoint/georeference/marker_search.h"
 #include "colmap_seapoint/georeference/triangulate_target.h"
 #include "colmap_seapoint/io/files/map_projection.h"
 #include "colmap_seapoint/io/files/positions_csv.h"
@@ -176,12 +176,12 @@ Targets TriangulateTargets(const SparseModel& model, const ScaleSources& sources
 
 using Markers = std::map<MarkerName, MarkerPlace>;
 
-// "tag36h11:3, tag36h11:4"; "none" without any.
-template <typename Map>
-std::string NamesOf(const Map& by_name) {
-  std::string text;
-  for (const auto& [name, value] : by_name) text += (text.empty() ? "" : ", ") + MarkerText(name);
-  return text.empty() ? "none" : text;
+MarkerCounts CountsOf(const Markers& markers) {
+  MarkerCounts counts;
+  for (const auto& [name, place] : markers) {
+    if (place.num_seen > 0) counts[name] = place.num_seen;
+  }
+  return counts;
 }
 
 // The bars' coded markers take their places among the targets; marks in a table come first.
@@ -193,7 +193,7 @@ void AddMarkers(const std::vector<ScaleBar>& bars, const Markers& markers, Targe
       if (!name || targets->count(end.name) > 0) continue;
       const auto found = markers.find(*name);
       MarkerPlace place;
-      place.problem = "is found in no picture; found: " + NamesOf(markers);
+      place.problem = "is found in no picture; found: " + MostFound(CountsOf(markers));
       if (found != markers.end()) place = found->second;
       TriangulatedTarget& target = (*targets)[end.name];
       target.problem = place.problem;
@@ -223,13 +223,13 @@ Place PlaceOf(const SparseModel& model, const ScaleSources& sources, const Scale
   }
   const auto target = targets.find(end.name);
   if (target == targets.end()) {
-    throw Error(
-        bar.where, "'" + end.name + "' is no target",
-        sources.targets_path.empty()
-            ? "write a coded marker (tag36h11:12), point:ID for a 3D point of the model, or give "
-              "--targets_path"
-            : "mark it in " + sources.targets_path +
-                  ", or write point:ID for a 3D point of the model");
+    throw Error(bar.where, "'" + end.name + "' is no target",
+                sources.targets_path.empty()
+                    ? "give --targets_path, or write a coded marker (tag36h11:12) or point:ID for "
+                      "a 3D point "
+                      "of the model"
+                    : "mark it in " + sources.targets_path +
+                          ", or write point:ID for a 3D point of the model");
   }
   const TriangulatedTarget& found = target->second;
   if (found.problem.empty()) return {"", found.xyz, found.covariance};
@@ -337,55 +337,6 @@ Eigen::Vector3d MeanViewingDirection(const SparseModel& model) {
 
 }  // namespace
 
-std::vector<MarkerName> MarkersOfBars(const ScaleSources& sources) {
-  if (sources.scale_bars_path.empty()) return {};
-  std::set<std::string> marked;
-  if (!sources.targets_path.empty()) {
-    for (const TargetMark& mark : ReadTargetsCsv(sources.targets_path)) marked.insert(mark.target);
-  }
-  std::set<MarkerName> names;
-  for (const ScaleBar& bar : ReadScaleBarsCsv(sources.scale_bars_path)) {
-    for (const ScaleBarEnd& end : bar.ends) {
-      if (marked.count(end.name) > 0) continue;
-      const ParsedMarker parsed = ParseMarkerName(end.name);
-      if (!parsed.problem.empty()) {
-        throw Error(bar.where, "there is no marker " + end.name,
-                    "write its number: " + parsed.problem);
-      }
-      if (parsed.name) names.insert(*parsed.name);
-    }
-  }
-  return {names.begin(), names.end()};
-}
-
-std::vector<MarkerFamily> FamiliesToFind(const ScaleSources& sources) {
-  std::set<MarkerFamily> families;
-  for (const MarkerName& name : MarkersOfBars(sources)) families.insert(name.family);
-  if (sources.marker_size > 0) {
-    const auto sized = ParseMarkerFamilies(sources.marker_families);
-    if (sized) families.insert(sized->begin(), sized->end());
-  }
-  return {families.begin(), families.end()};
-}
-
-std::vector<std::string> MissingMarkers(const ScaleSources& sources,
-                                        const std::vector<MarkerSighting>& sightings) {
-  std::map<MarkerName, size_t> counts;
-  for (const MarkerSighting& sighting : sightings) {
-    const auto name = ParseMarkerName(sighting.marker).name;
-    if (name && !sighting.is_mirrored) ++counts[*name];
-  }
-  std::vector<std::string> lines;
-  for (const MarkerName& name : MarkersOfBars(sources)) {
-    const auto found = counts.find(name);
-    if (found != counts.end() && found->second >= 2) continue;
-    lines.push_back(sources.scale_bars_path + ": " + MarkerText(name) + " is found in " +
-                    (found == counts.end() ? "no picture" : "one picture only") +
-                    "; found: " + NamesOf(counts));
-  }
-  return lines;
-}
-
 void CheckScaleTables(const ScaleSources& sources) {
   MarkersOfBars(sources);
   if (!sources.targets_path.empty()) ReadTargetsCsv(sources.targets_path);
@@ -410,7 +361,8 @@ ScaleMeasurements GatherMeasurements(const SparseModel& model, const ScaleSource
   AddRig(model, sources, rig, &result);
   if (!result.problem.positions.empty() || !result.problem.lengths.empty()) return result;
   if (sources.scale_bars_path.empty()) {
-    throw Error("--marker_size", "no marker has a place in the model; found: " + NamesOf(markers),
+    throw Error("--marker_size",
+                "no marker has a place in the model; found: " + MostFound(CountsOf(markers)),
                 "see that two of its pictures show one whole, and that --marker_families is right");
   }
   throw Error(sources.scale_bars_path,

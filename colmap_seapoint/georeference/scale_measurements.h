@@ -12,7 +12,6 @@
 #include "colmap_seapoint/io/files/markers_csv.h"
 #include "colmap_seapoint/io/files/model_units.h"
 #include "colmap_seapoint/io/files/run_report.h"
-#include "colmap_seapoint/markers/marker_name.h"
 
 namespace colmap_seapoint {
 
@@ -32,17 +31,6 @@ struct ScaleMeasurements {
 
 // Reads all tables, so that a bad one throws its Error before hours of work, not after them.
 void CheckScaleTables(const ScaleSources& sources);
-
-// The coded markers that the bars' ends name, sorted. Throws Error as CheckScaleTables.
-std::vector<MarkerName> MarkersOfBars(const ScaleSources& sources);
-
-// Which markers have to be looked for in the pictures; empty: none.
-std::vector<MarkerFamily> FamiliesToFind(const ScaleSources& sources);
-
-// One line for each bar's marker that fewer than two pictures of all show, so that it is known
-// before hours of mapping: "scale bars: tag36h11:12 is found in no picture; found: ...".
-std::vector<std::string> MissingMarkers(const ScaleSources& sources,
-                                        const std::vector<MarkerSighting>& sightings);
 
 // Reads the tables, triangulates the targets and finds the pictures. Pictures of the tables that
 // the model does not hold (they may be in other models) are named once, on stderr; bars that do not

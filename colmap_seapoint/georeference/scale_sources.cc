@@ -1,5 +1,8 @@
 #include "colmap_seapoint/georeference/scale_sources.h"
 
+#include <algorithm>
+
+#include "colmap_seapoint/markers/marker_codes.h"
 #include "colmap_seapoint/markers/marker_name.h"
 
 namespace colmap_seapoint {
@@ -29,10 +32,11 @@ void ScaleSources::Bind(OptionTable* table) {
              "side of the black square of every coded marker in the scene, metres: each one found "
              "is a scale bar then; 0 = unknown",
              "ours", 0, 1000);
-  table->Add("marker_families", &marker_families,
-             "which markers have marker_size: tag36h11, DICT_4X4, DICT_5X5, DICT_6X6, with commas "
-             "between them",
-             "ours");
+  table->Add(
+      "marker_families", &marker_families,
+      "which markers have marker_size: tag36h11, DICT_6X6, or both with a comma between them "
+      "(smaller ones are found by chance too: name them as ends of bars)",
+      "ours");
   table->Add("length_sigma", &length_sigma,
              "standard deviation of rig_spacing, marker_size, and of bars that do not give theirs, "
              "metres",
@@ -54,9 +58,13 @@ std::string ScaleSources::Check() const {
   if (!crs.empty() && positions_path.empty()) {
     return "crs is '" + crs + "', it needs positions_path: the positions that it is for";
   }
-  if (marker_size > 0 && !ParseMarkerFamilies(marker_families)) {
-    return "marker_families is '" + marker_families +
-           "', must be of tag36h11, DICT_4X4, DICT_5X5 and DICT_6X6, with commas between them";
+  if (marker_size > 0) {
+    const auto families = ParseMarkerFamilies(marker_families);
+    const auto is_small = [](MarkerFamily family) { return NumMendedBits(family) == 0; };
+    if (!families || std::any_of(families->begin(), families->end(), is_small)) {
+      return "marker_families is '" + marker_families +
+             "', must be tag36h11, DICT_6X6, or both with a comma between them";
+    }
   }
   return "";
 }

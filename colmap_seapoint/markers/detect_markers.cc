@@ -20,9 +20,6 @@ constexpr int kMinSide = 16;
 // then. In pixels.
 constexpr double kSamePlace = 2;
 
-// 4x4 markers differ in too few bits to mend one.
-int NumMendedBits(MarkerFamily family) { return family == MarkerFamily::kAruco4x4 ? 0 : 1; }
-
 // The library's own form of a family; `mirrored` reads the bits of its mirror images.
 class LibraryFamily {
  public:

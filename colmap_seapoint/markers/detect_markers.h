@@ -1,5 +1,5 @@
 // Where a picture shows coded markers (ours beyond the paper; the AprilTag library finds them, the
-// ArUco ones too: of markers 25 pixels wide in weak light and blur it found 494 of 540, OpenCV's
+// ArUco ones too: of markers 25 pixels wide in weak light and blur it found 504 of 540, OpenCV's
 // aruco 224, with corners twice as exact).
 #pragma once
 
@@ -28,13 +28,13 @@ struct DetectedMarker {
 
 // All markers of the families that are whole in the picture with some white around them, sorted by
 // name and place, the mirrored ones last; the same marker may come more than once. One wrong bit is
-// mended, in 4x4 markers none: these have too few. Markers of about 16 pixels a side are
+// mended, in 4x4 and 5x5 markers none (NumMendedBits). Markers of about 16 pixels a side are
 // found in good water, of 25 in bad. Single-threaded; the same for any machine. Cost: about 0.15
-// seconds a megapixel; 30 bytes a pixel of memory.
+// seconds a megapixel; 12 bytes a pixel of memory.
 std::vector<DetectedMarker> DetectMarkers(const GrayImage& picture,
                                           const std::vector<MarkerFamily>& families);
 
 // What one pixel of a picture takes while its markers are looked for, bytes.
-inline constexpr int kMarkerBytesPerPixel = 30;
+inline constexpr int kMarkerBytesPerPixel = 12;
 
 }  // namespace colmap_seapoint

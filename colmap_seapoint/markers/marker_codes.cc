@@ -70,6 +70,10 @@ const MarkerCodes& CodesOf(MarkerFamily family) {
   return all[static_cast<size_t>(family)];
 }
 
+int NumMendedBits(MarkerFamily family) {
+  return family == MarkerFamily::kAruco4x4 || family == MarkerFamily::kAruco5x5 ? 0 : 1;
+}
+
 int NumMarkers(MarkerFamily family) { return static_cast<int>(CodesOf(family).codes.size()); }
 
 int NumCells(MarkerFamily family) { return CodesOf(family).side + 2; }

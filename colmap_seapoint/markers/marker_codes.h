@@ -20,6 +20,11 @@ struct MarkerCodes {
 // Made once, when first asked for. Any number of threads.
 const MarkerCodes& CodesOf(MarkerFamily family);
 
+// How many wrong bits of a marker are mended. The smaller squares have too few bits for any: they
+// are found by chance in pictures that show none, a 4x4 one of no matter which number in every
+// second picture, a 5x5 one in every fiftieth.
+int NumMendedBits(MarkerFamily family);
+
 int NumMarkers(MarkerFamily family);
 
 // Cells of the marker's side, border included.

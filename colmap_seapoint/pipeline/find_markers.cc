@@ -41,7 +41,7 @@ Found FindIn(const std::filesystem::path& path, const std::vector<MarkerFamily>&
   return found;
 }
 
-// A line a marker: in how many pictures it is.
+// A line a marker: in how many pictures it is. Those in a single one give no place.
 std::string CountText(const std::vector<MarkerSighting>& sightings) {
   std::map<std::string, std::set<std::string>> pictures;
   for (const MarkerSighting& sighting : sightings) {
@@ -49,10 +49,15 @@ std::string CountText(const std::vector<MarkerSighting>& sightings) {
         sighting.image);
   }
   std::string text;
+  size_t num_once = 0;
   for (const auto& [marker, names] : pictures) {
-    text += marker + ": in " + std::to_string(names.size()) +
-            (names.size() == 1 ? " picture\n" : " pictures\n");
+    if (names.size() < 2) {
+      ++num_once;
+    } else {
+      text += marker + ": in " + std::to_string(names.size()) + " pictures\n";
+    }
   }
+  if (num_once > 0) text += std::to_string(num_once) + " more, each in one picture only\n";
   return text.empty() ? "no marker is found\n" : text;
 }
 

@@ -8,6 +8,7 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/georeference/marker_search.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/content_hash.h"

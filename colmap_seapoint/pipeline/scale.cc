@@ -7,6 +7,7 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/georeference/marker_search.h"
 #include "colmap_seapoint/io/cloud/transform_cloud.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/colmap/colmap_rigs.h"

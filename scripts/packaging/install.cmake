@@ -39,7 +39,7 @@ endif()
 # only the headers that a room names as its public ones do.
 set(exported_targets
   seapoint_flags seapoint_simd seapoint_base seapoint_system
-  seapoint_files seapoint_outputs seapoint_image seapoint_cloud seapoint_colmap seapoint_io
+  seapoint_files seapoint_outputs seapoint_image seapoint_cloud seapoint_colmap seapoint_pdf seapoint_io
   seapoint_feature_kernels seapoint_feature_detector seapoint_feature_descriptor
   seapoint_feature_matching seapoint_feature_retrieval seapoint_feature_remeasuring seapoint_feature
   seapoint_densify_kernels seapoint_densify_match seapoint_densify_overlap seapoint_densify_cloud
@@ -101,5 +101,5 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
   "libeigen3-dev, libopencv-dev (>= 4.5), libceres-dev (>= 2.0), libhwy-dev (>= 1.0.3), pkg-config, \
 libsqlite3-dev, libproj-dev, libxxhash-dev, libjpeg-dev, libpng-dev, libtiff-dev, libwebp-dev, \
-libexiv2-dev, libapriltag-dev")
+libexiv2-dev, libapriltag-dev, libhpdf-dev")
 include(CPack)
