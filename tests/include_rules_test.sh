@@ -36,12 +36,13 @@ colmap_seapoint/tracks          colmap_seapoint/base colmap_seapoint/io/colmap
 colmap_seapoint/adjustment/equations colmap_seapoint/base
 colmap_seapoint/adjustment      colmap_seapoint/base colmap_seapoint/adjustment/equations
 colmap_seapoint/mapping         colmap_seapoint/base colmap_seapoint/tracks colmap_seapoint/adjustment colmap_seapoint/adjustment/equations colmap_seapoint/remeasuring feature/remeasuring colmap_seapoint/io/files colmap_seapoint/io/colmap colmap_seapoint/io/image
-colmap_seapoint/pictures        colmap_seapoint/base colmap_seapoint/io/* feature feature/* densify densify/*
+colmap_seapoint/pictures        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/* colmap_seapoint/markers feature feature/* densify densify/*
 colmap_seapoint/pairing         colmap_seapoint/base colmap_seapoint/io/* feature feature/*
 colmap_seapoint/remeasuring     colmap_seapoint/base feature/remeasuring
 colmap_seapoint/report          colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/compare colmap_seapoint/georeference densify densify/*
 colmap_seapoint/pipeline        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/compare colmap_seapoint/georeference colmap_seapoint/mapping colmap_seapoint/pictures colmap_seapoint/pairing colmap_seapoint/report feature feature/* densify densify/*
-colmap_seapoint/cli             colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files colmap_seapoint/pipeline
+colmap_seapoint/pipeline/markers colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/pictures colmap_seapoint/report colmap_seapoint/pipeline
+colmap_seapoint/cli             colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files colmap_seapoint/pipeline colmap_seapoint/pipeline/markers
 colmap_seapoint                 colmap_seapoint/base colmap_seapoint/system colmap_seapoint/cli
 END
 

@@ -2,9 +2,9 @@
 #include "colmap_seapoint/pipeline/compare.h"
 #include "colmap_seapoint/pipeline/densify.h"
 #include "colmap_seapoint/pipeline/extract.h"
-#include "colmap_seapoint/pipeline/find_markers.h"
+#include "colmap_seapoint/pipeline/markers/marker_finder.h"
+#include "colmap_seapoint/pipeline/markers/print_markers.h"
 #include "colmap_seapoint/pipeline/match.h"
-#include "colmap_seapoint/pipeline/print_markers.h"
 #include "colmap_seapoint/pipeline/reconstruct.h"
 #include "colmap_seapoint/pipeline/scale.h"
 

@@ -15,7 +15,6 @@
 #include "colmap_seapoint/mapping/second_chance.h"
 #include "colmap_seapoint/pipeline/densify_models.h"
 #include "colmap_seapoint/pipeline/extract.h"
-#include "colmap_seapoint/pipeline/find_markers.h"
 #include "colmap_seapoint/pipeline/map.h"
 #include "colmap_seapoint/pipeline/match.h"
 #include "colmap_seapoint/pipeline/scale_models.h"

@@ -14,9 +14,9 @@
 #include "colmap_seapoint/io/outputs/output_folder.h"
 #include "colmap_seapoint/io/outputs/replaceable_file.h"
 #include "colmap_seapoint/io/outputs/same_file.h"
+#include "colmap_seapoint/pictures/find_markers.h"
 #include "colmap_seapoint/pictures/read_rig.h"
 #include "colmap_seapoint/pipeline/earlier_outputs.h"
-#include "colmap_seapoint/pipeline/find_markers.h"
 #include "colmap_seapoint/pipeline/output_paths.h"
 #include "colmap_seapoint/report/scale_report.h"
 

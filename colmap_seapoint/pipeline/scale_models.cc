@@ -7,9 +7,12 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/content_hash.h"
 #include "colmap_seapoint/io/files/model_units.h"
 #include "colmap_seapoint/io/files/run_report_json.h"
+#include "colmap_seapoint/markers/detect_markers.h"
+#include "colmap_seapoint/pictures/find_markers.h"
 #include "colmap_seapoint/pipeline/earlier_outputs.h"
 
 namespace colmap_seapoint {
@@ -57,6 +60,36 @@ void to_json(nlohmann::ordered_json& json, const ScaledModel& scaled) {
 
 void from_json(const nlohmann::ordered_json& json, ScaledModel& scaled) {
   scaled = {json.at("report").get<RunReport>(), json.at("text"), json.at("line")};
+}
+
+std::vector<MarkerSighting> FindMarkersOnce(const MarkerSearch& search, const Workspace& workspace,
+                                            WorkspaceState* state, RunReport* report) {
+  constexpr char kStage[] = "markers";
+  if (search.families.empty()) {
+    state->Forget(kStage);
+    state->Folder()->Remove(workspace.markers.filename().string());
+    return {};
+  }
+  std::string inputs;
+  for (const MarkerFamily family : search.families) inputs += FamilyText(family) + ",";
+  std::vector<std::string> names;
+  for (const RunReport::Input& picture : search.pictures) {
+    inputs += "\n" + picture.name + " " + picture.hash;
+    if (!picture.hash.empty()) names.push_back(picture.name);
+  }
+  const Stage stage = {kStage, kMarkerVersion, inputs, "The pictures' markers are known already"};
+  const auto part = RunStage<RunReport>(state, stage, [&]() -> StageOutput<RunReport> {
+    RunReport found;
+    {
+      StageTimer timer(&found, kStage);
+      const auto sightings =
+          FindMarkers(workspace.images, names, search.families, search.num_threads, &found);
+      WriteTextFile(workspace.markers, MarkersCsv(sightings));
+    }
+    return {std::move(found), {workspace.markers}};
+  });
+  AddPart(part, report);
+  return ReadMarkersCsv(workspace.markers);
 }
 
 RunReport ScaleAllModels(ModelScalerOptions scaler, const Workspace& workspace,

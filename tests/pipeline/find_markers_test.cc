@@ -1,5 +1,5 @@
 // Coded markers from pictures to a scaled model, and from the printed sheet back.
-#include "colmap_seapoint/pipeline/find_markers.h"
+#include "colmap_seapoint/pictures/find_markers.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,9 @@
 
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/image/image_file.h"
-#include "colmap_seapoint/pipeline/print_markers.h"
-#include "colmap_seapoint/pipeline/scale.h"
+#include "colmap_seapoint/pipeline/markers/marker_finder.h"
+#include "colmap_seapoint/pipeline/markers/print_markers.h"
+#include "colmap_seapoint/pipeline/scale_models.h"
 #include "tests/io/test_files.h"
 #include "tests/markers/marker_world.h"
 

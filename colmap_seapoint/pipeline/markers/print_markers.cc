@@ -1,4 +1,4 @@
-#include "colmap_seapoint/pipeline/print_markers.h"
+#include "colmap_seapoint/pipeline/markers/print_markers.h"
 
 #include <cstdio>
 
