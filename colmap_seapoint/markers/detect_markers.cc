@@ -113,7 +113,7 @@ Eigen::Vector2d DetectedMarker::Centre() const {
 
 std::vector<DetectedMarker> DetectMarkers(const GrayImage& picture,
                                           const std::vector<MarkerFamily>& families) {
-  if (std::min(picture.width, picture.height) < kMinSide) return {};
+  if (families.empty() || std::min(picture.width, picture.height) < kMinSide) return {};
   std::deque<LibraryFamily> library;
   const std::unique_ptr<apriltag_detector_t, void (*)(apriltag_detector_t*)> detector(
       apriltag_detector_create(), apriltag_detector_destroy);
