@@ -2,6 +2,8 @@
 #include "colmap_seapoint/pipeline/compare.h"
 #include "colmap_seapoint/pipeline/densify.h"
 #include "colmap_seapoint/pipeline/extract.h"
+#include "colmap_seapoint/pipeline/markers/marker_finder.h"
+#include "colmap_seapoint/pipeline/markers/print_markers.h"
 #include "colmap_seapoint/pipeline/match.h"
 #include "colmap_seapoint/pipeline/reconstruct.h"
 #include "colmap_seapoint/pipeline/scale.h"
@@ -19,6 +21,9 @@ std::vector<Command> AllCommands() {
                   RunExhaustiveMatcher),
       MakeCommand("spatial_matcher", "match each picture with those taken near it",
                   RunSpatialMatcher),
+      MakeCommand("marker_finder", "find coded markers in pictures, into a table", RunMarkerFinder),
+      MakeCommand("marker_sheet", "coded markers and scale bars to print, as a PDF",
+                  RunPrintMarkers),
       MakeCommand("model_scaler", "COLMAP model and cloud -> metres, from scale bars and positions",
                   RunModelScaler),
       MakeCommand("partial_densifier", "COLMAP model and pictures -> one dense cloud",

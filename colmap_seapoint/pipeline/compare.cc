@@ -43,10 +43,6 @@ std::vector<double> ParseDistances(const std::string& text) {
   return distances;
 }
 
-std::filesystem::path FolderOf(const std::filesystem::path& file) {
-  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-}
-
 CompareOptions ToCompareOptions(const CloudComparerOptions& options) {
   CompareOptions compare = options.compare;
   compare.distances = ParseDistances(options.distances);

@@ -54,6 +54,10 @@ Names DifferenceNames() {
   return {"input_to_reference.ply", "reference_to_input.ply", "differences.png"};
 }
 
+std::filesystem::path FolderOf(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+}
+
 void CheckOutputPaths(const OptionTable& table) {
   for (const OptionInfo& output : table.Options()) {
     const std::string path = PathOf(output);

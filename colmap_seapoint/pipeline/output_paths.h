@@ -19,6 +19,9 @@ std::vector<std::string> ScaledModelNames();
 // cloud_comparer, into --difference_path.
 std::vector<std::string> DifferenceNames();
 
+// The folder that the file lies in, also where its path names none.
+std::filesystem::path FolderOf(const std::filesystem::path& file);
+
 // Throws UsageError, naming both options, when the path of one that is an output leads to the same
 // file or folder as that of another one, also through links (same_file.h).
 void CheckOutputPaths(const OptionTable& table);

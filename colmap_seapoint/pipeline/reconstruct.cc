@@ -11,6 +11,7 @@
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/cameras/camera_identity.h"
 #include "colmap_seapoint/cameras/exif_focal_length.h"
+#include "colmap_seapoint/georeference/marker_search.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/colmap/database_features.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
@@ -182,6 +183,15 @@ std::vector<ModelSummary> ReadModels(const std::vector<fs::path>& paths, RunRepo
   return models;
 }
 
+// Before the hours of mapping, so that a marker that no picture shows is known by then.
+void FindMarkersOfDive(const Options& options, const Workspace& workspace, WorkspaceState* state,
+                       RunReport* report) {
+  const MarkerSearch search = {FamiliesToFind(options.scale), report->inputs,
+                               options.run.num_threads};
+  const auto sightings = FindMarkersOnce(search, workspace, state, report);
+  for (const std::string& line : MissingMarkers(options.scale, sightings)) LogWarning(line);
+}
+
 // Into sparse_scaled/<k>: the mapper's own models stay as they are.
 void ScaleModels(const Options& options, const PictureSet& pictures, const Workspace& workspace,
                  const std::string& mapper_fingerprint, WorkspaceState* state,
@@ -190,6 +200,7 @@ void ScaleModels(const Options& options, const PictureSet& pictures, const Works
   scaler.image_path = workspace.images.string();
   scaler.rig = options.rig;
   scaler.sources = options.scale;
+  if (!FamiliesToFind(options.scale).empty()) scaler.markers_path = workspace.markers.string();
   scaler.run = options.run;
   const PictureRecords records = RecordsFromExif(pictures.readable);
   AddPart(ScaleAllModels(scaler, records, workspace, mapper_fingerprint, state, models), report);
@@ -301,6 +312,7 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& giv
       OpenWorkspaceDatabase(workspace.database, pictures.readable, options.reader, begin, &state);
   const Stage second_chance = SecondChanceStage(options, begin);
   ExtractAndMatch(options, workspace, pictures, second_chance, &database, &state, &report);
+  FindMarkersOfDive(options, workspace, &state, &report);
   TieTheRest(options, workspace, second_chance, &database, &state, &report);
   const Mapping mapping = MapPictures(plan, database, &state);
   report.stages.insert(report.stages.end(), mapping.seconds.begin(), mapping.seconds.end());

@@ -16,16 +16,17 @@ struct Workspace {
         sparse(root / "sparse"),
         scaled(root / "sparse_scaled"),
         dense(root / "dense"),
+        markers(root / "found_markers.csv"),
         report(root / "report") {}
 
   // What the chain makes directly in the root: checked, and made ours, before anything else is
   // done. The database's are there while it is begun anew, those of sparse while the mapper runs.
   std::vector<std::string> Names() const {
-    return {"database.db",   "database.db.tmp", "sparse", "sparse.tmp",
-            "sparse_scaled", "dense",           "report"};
+    return {"database.db", "database.db.tmp",   "sparse", "sparse.tmp", "sparse_scaled",
+            "dense",       "found_markers.csv", "report"};
   }
 
-  std::filesystem::path images, root, database, sparse, scaled, dense, report;
+  std::filesystem::path images, root, database, sparse, scaled, dense, markers, report;
 };
 
 }  // namespace colmap_seapoint
