@@ -159,7 +159,7 @@ TEST_F(ScaleModelTest, OptionsThatContradictEachOtherAreUsage) {
   EXPECT_USAGE_ERROR(ScaleModel(Options()), "nothing says how large the model is");
   ModelScalerOptions options = WithBar();
   options.output_path = options.input_path + "/.";
-  EXPECT_USAGE_ERROR(ScaleModel(options), "output_path is the input_path");
+  EXPECT_USAGE_ERROR(RunModelScaler(options), "output_path is the input_path");
   options = WithBar();
   options.cloud_path = (folder_ / "out/cloud.ply").string();
   EXPECT_USAGE_ERROR(ScaleModel(options), "cloud_path lies in output_path");
