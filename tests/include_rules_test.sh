@@ -28,6 +28,7 @@ densify/cloud                   colmap_seapoint/base densify/match densify/overl
 densify/sequence                colmap_seapoint/base densify/match densify/overlap densify/cloud
 densify/maps                    colmap_seapoint/base densify/match densify/cloud
 densify                         colmap_seapoint/base densify/*
+colmap_seapoint/estimate        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files
 colmap_seapoint/georeference    colmap_seapoint/base colmap_seapoint/io/files
 colmap_seapoint/compare         colmap_seapoint/base colmap_seapoint/io/cloud
 colmap_seapoint/tracks          colmap_seapoint/base colmap_seapoint/io/colmap
@@ -38,7 +39,7 @@ colmap_seapoint/pictures        colmap_seapoint/base colmap_seapoint/io/* featur
 colmap_seapoint/pairing         colmap_seapoint/base colmap_seapoint/io/* feature feature/*
 colmap_seapoint/remeasuring     colmap_seapoint/base feature/remeasuring
 colmap_seapoint/report          colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/georeference densify densify/*
-colmap_seapoint/pipeline        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/georeference colmap_seapoint/mapping colmap_seapoint/pictures colmap_seapoint/pairing colmap_seapoint/report feature feature/* densify densify/*
+colmap_seapoint/pipeline        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/estimate colmap_seapoint/georeference colmap_seapoint/mapping colmap_seapoint/pictures colmap_seapoint/pairing colmap_seapoint/report feature feature/* densify densify/*
 colmap_seapoint/cli             colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files colmap_seapoint/pipeline
 colmap_seapoint                 colmap_seapoint/base colmap_seapoint/system colmap_seapoint/cli
 END

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/heartbeat.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/base/version.h"
 #include "colmap_seapoint/cli/command.h"
@@ -76,7 +77,11 @@ ExitCode RunCommand(const Command& command, const std::vector<std::string>& argu
     return kDone;
   }
   ApplyRunOptions(table);
-  const CommandResult result = command.run();
+  CommandResult result;
+  {
+    const Heartbeat heartbeat;
+    result = command.run();
+  }
   std::cout << result.text << std::flush;
   return result.is_complete ? kDone : kIncomplete;
 }

@@ -55,7 +55,7 @@ std::vector<std::string> Arguments(const MapperCall& call) {
 
 MapperEnd RunMapperProcess(const ColmapProgram& colmap, const MapperCall& call) {
   Progress progress("Pictures registered by colmap mapper",
-                    static_cast<int64_t>(call.num_pictures));
+                    static_cast<int64_t>(call.num_pictures), 0, Work::kRegistration);
   std::string last_line;
   bool says_no_model = false;
   const auto read_line = [&](const std::string& line) {

@@ -89,7 +89,7 @@ void MatchPairs(const std::vector<ImagePair>& pairs, const SeaPointMatchingOptio
   const auto count = static_cast<int64_t>(missing.size());
   FeatureStore store(database);
   std::optional<DatabaseTransaction> batch;
-  Progress progress("Matches of pairs", total, total - count);
+  Progress progress("Matches of pairs", total, total - count, Work::kPairs);
   num_threads = EffectiveNumThreads(num_threads);
   OrderedPipeline<MatchedPair>(
       num_threads, count, 4 * num_threads,

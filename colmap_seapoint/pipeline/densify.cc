@@ -134,7 +134,9 @@ SequenceReport Densify(const PartialDensifierOptions& options, const SparseModel
     }
   };
   callbacks.progress = [&](int64_t done, int64_t total) {
-    if (!progress) progress = std::make_unique<Progress>("Densification steps", total);
+    if (!progress) {
+      progress = std::make_unique<Progress>("Densification steps", total, 0, Work::kDensification);
+    }
     progress->Update(done);
   };
   if (options.densification.write_debug) {

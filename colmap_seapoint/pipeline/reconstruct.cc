@@ -14,6 +14,7 @@
 #include "colmap_seapoint/mapping/second_chance.h"
 #include "colmap_seapoint/pipeline/densify_models.h"
 #include "colmap_seapoint/pipeline/extract.h"
+#include "colmap_seapoint/pipeline/job_plan.h"
 #include "colmap_seapoint/pipeline/map.h"
 #include "colmap_seapoint/pipeline/match.h"
 #include "colmap_seapoint/pipeline/scale_models.h"
@@ -197,6 +198,8 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& opt
 
   const PictureSet pictures = ReadPictureSet(ExtractorOptions(options, workspace));
   const Stage begin = DatabaseStage(options, pictures.readable);
+  JobProgress progress(PlanJob(options, workspace, pictures.readable,
+                               MatchesAllPairs(options, pictures.readable.size()), begin, state));
   ColmapDatabase database =
       OpenWorkspaceDatabase(workspace.database, pictures.readable, options.reader, begin, &state);
   ExtractAndMatch(options, workspace, pictures, SecondChanceStage(options, begin), &database,
@@ -206,6 +209,7 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& opt
   std::vector<ModelSummary> models = ReadModels(mapping.models, &report);
   ScaleModels(options, workspace, mapping.fingerprint, &state, &models, &report);
   DensifyModels(options, workspace, mapping.fingerprint, &database, &state, &models, &report);
+  RememberJob(&progress);
   return WriteReport(workspace, models, report);
 }
 

@@ -31,6 +31,9 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
              "after mapping, adjust every model once more with the principal point free; not with "
              "--ImageReader.camera_params or --Mapper.ba_refine_*",
              "ours");
+  table->Add("check_disk", &check_disk,
+             "end before any work where the disk is too small by far; 0 = go on all the same",
+             "ours");
   table->Add("rig", &rig, kRigHelp, "paper 4");
   scale.Bind(table);
   reader.Bind(table);

@@ -26,6 +26,7 @@ struct AutomaticReconstructorOptions {
   std::string quality = "survey";      // field, survey or archive: what posing may cost
   std::string matcher = "auto";        // auto, sequential or exhaustive
   bool adjust_principal_point = true;
+  bool check_disk = true;
   std::string rig;
   ScaleSources scale;
   ImageReaderOptions reader;

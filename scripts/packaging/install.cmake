@@ -44,7 +44,7 @@ set(exported_targets
   seapoint_feature_matching seapoint_feature_retrieval seapoint_feature_remeasuring seapoint_feature
   seapoint_densify_kernels seapoint_densify_match seapoint_densify_overlap seapoint_densify_cloud
   seapoint_densify_sequence seapoint_densify_maps seapoint_densify
-  seapoint_georeference seapoint_compare seapoint_tracks seapoint_adjustment seapoint_remeasuring
+  seapoint_estimate seapoint_georeference seapoint_compare seapoint_tracks seapoint_adjustment seapoint_remeasuring
   seapoint_mapping seapoint_pictures seapoint_pairing
   seapoint_report seapoint_pipeline)
 foreach(target IN LISTS exported_targets)

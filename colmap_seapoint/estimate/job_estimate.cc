@@ -1,0 +1,174 @@
+#include "colmap_seapoint/estimate/job_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace colmap_seapoint {
+namespace {
+
+// Trials of the mapper that follow, as long as the first one runs, and any later one.
+constexpr double kFurtherTrials = 0.5;
+constexpr double kFurtherTrialsOfMany = 0.25;
+constexpr int64_t kManyPictures = 120;
+// Of a part: where the extrapolation counts as much as what was expected.
+constexpr double kFirmShare = 0.06;
+// Seconds of work that the machine is taken to have done at the expected pace.
+constexpr double kPriorSeconds = 0.5;
+constexpr double kMaxPace = 30;
+// Matching hard pairs takes longer, on any machine.
+constexpr double kMaxPaceOfPairs = 2.5;
+constexpr double kMinRatioSeconds = 0.5;  // for the history
+
+constexpr Work kPlanned[] = {Work::kPictures,     Work::kLookAlikes, Work::kPairs,
+                             Work::kRegistration, Work::kRefinement, Work::kDensification,
+                             Work::kMaps};
+
+// A hard survey takes them ten times longer, which says nothing of the machine.
+bool IsMappers(Work work) { return work == Work::kRegistration || work == Work::kRefinement; }
+
+// The mapper's work for a model that has this share of its pictures: it adjusts all of them again
+// and again.
+double ShareOfWork(Work work, double share) {
+  return work == Work::kRegistration ? std::pow(share, 1.2) : share;
+}
+
+}  // namespace
+
+JobEstimate::JobEstimate(const OfWork<WorkCost>& costs, const OfWork<bool>& done_before)
+    : is_over_(done_before) {
+  for (const Work work : kPlanned) {
+    known_[work].cost = costs[work];
+    const double seconds = static_cast<double>(costs[work].count) * costs[work].seconds_each;
+    if (done_before[work]) seconds_before_ += seconds;
+  }
+}
+
+// A pilot of fewer pictures comes before the first trial; a trial is followed by others, each with
+// a refinement of its own.
+void JobEstimate::BeginTrial(int64_t total) {
+  Known& trials = known_[Work::kRegistration];
+  if (static_cast<double>(total) > trials.total) {
+    for (const Work work : {Work::kRegistration, Work::kRefinement}) {
+      known_[work].num_parts = 0;
+      known_[work].seconds = 0;
+    }
+  }
+  trials.total = 0;
+  is_over_[Work::kRefinement] = false;
+}
+
+// A refinement consists of several adjustments, with other work between them.
+void JobEstimate::Begin(Work work, double now, int64_t total, int64_t already_done) {
+  if (work == Work::kOther || (work == Work::kRefinement && part_.work == work)) return;
+  FinishPart(now);
+  if (work == Work::kRegistration) BeginTrial(total);
+  for (const Work earlier : kPlanned) {
+    if (earlier < work) is_over_[earlier] = true;
+  }
+  is_over_[work] = false;
+  Known& known = known_[work];
+  ++known.num_parts;
+  known.total += static_cast<double>(std::max<int64_t>(total, 0));
+  part_ = {work, now, static_cast<double>(total), static_cast<double>(already_done),
+           static_cast<double>(already_done)};
+}
+
+void JobEstimate::Advance(Work work, int64_t done) {
+  // The mapper counts from the beginning again when it begins another model.
+  if (work == part_.work) part_.done = std::max(part_.done, static_cast<double>(done));
+}
+
+void JobEstimate::End(Work work, double now) {
+  if (work != part_.work || work == Work::kRefinement) return;
+  FinishPart(now);
+  if (work == Work::kRegistration) Begin(Work::kRefinement, now, 0, 0);
+}
+
+void JobEstimate::FinishPart(double now) {
+  Known& known = known_[part_.work];
+  known.seconds += now - part_.begin;
+  known.expected += known.cost.seconds_each * (part_.work == Work::kRefinement
+                                                   ? static_cast<double>(known.cost.count)
+                                                   : part_.done - part_.already_done);
+  part_ = Part();
+}
+
+double JobEstimate::Pace() const {
+  double expected = kPriorSeconds, seconds = kPriorSeconds;
+  for (const Work work : kPlanned) {
+    const Known& known = known_[work];
+    if (IsMappers(work)) continue;
+    const double max_pace = work == Work::kPairs ? kMaxPaceOfPairs : kMaxPace;
+    expected += known.expected;
+    seconds += std::min(known.seconds, max_pace * known.expected);
+  }
+  return seconds / expected;
+}
+
+// With what little it has done, a part takes at least as long again as nothing was heard of it.
+double JobEstimate::PartSecondsLeft(double now) const {
+  const Known& known = known_[part_.work];
+  const double elapsed = std::max(now - part_.begin, 0.0);
+  const double pace = IsMappers(part_.work) ? std::max(1.0, Pace()) : Pace();
+  if (part_.work == Work::kRefinement) {
+    const double whole = pace * static_cast<double>(known.cost.count) * known.cost.seconds_each;
+    return whole <= 0 ? 0 : whole * whole / (whole + elapsed);
+  }
+  const double to_do = std::max(part_.total - part_.already_done, 0.0);
+  const double share =
+      to_do > 0 ? std::clamp((part_.done - part_.already_done) / to_do, 0.0, 1.0) : 1.0;
+  const double worked = ShareOfWork(part_.work, share);
+  const double whole = pace * to_do * known.cost.seconds_each;
+  const double expected = std::max(whole * (1 - worked), share > 0 ? 0 : 0.5 * elapsed);
+  if (worked <= 0) return expected;
+  const double weight = worked / (worked + kFirmShare);
+  return (1 - weight) * expected + weight * elapsed * (1 - worked) / worked;
+}
+
+// As long as those before took on the average, where there was one.
+double JobEstimate::TrialSecondsOf(Work work, double now) const {
+  const Known& known = known_[work];
+  const double expected =
+      std::max(1.0, Pace()) * static_cast<double>(known.cost.count) * known.cost.seconds_each;
+  const double before = known.seconds > 0 ? known.seconds / std::max(1, known.num_parts) : expected;
+  return work == part_.work ? std::max(before, now - part_.begin + PartSecondsLeft(now)) : before;
+}
+
+// Of a kind that is not over, beyond the part of it that is under way.
+double JobEstimate::SecondsToCome(Work work, double now) const {
+  const Known& known = known_[work];
+  if (IsMappers(work)) return work == part_.work ? 0 : TrialSecondsOf(work, now);
+  const double count = std::max(static_cast<double>(known.cost.count) - known.total, 0.0);
+  return Pace() * count * known.cost.seconds_each;
+}
+
+double JobEstimate::SecondsLeft(double now) const {
+  double left = part_.work == Work::kOther ? 0 : PartSecondsLeft(now);
+  for (const Work work : kPlanned) {
+    if (!is_over_[work]) left += SecondsToCome(work, now);
+  }
+  if (is_over_[Work::kRefinement]) return left;
+  const bool is_of_many = known_[Work::kRegistration].cost.count >= kManyPictures;
+  return left +
+         (is_of_many ? kFurtherTrialsOfMany : kFurtherTrials) *
+             (TrialSecondsOf(Work::kRegistration, now) + TrialSecondsOf(Work::kRefinement, now));
+}
+
+double JobEstimate::Share(double now) {
+  const double behind = seconds_before_ + now;
+  const double whole = behind + SecondsLeft(now);
+  if (whole > 0) share_ = std::max(share_, std::clamp(behind / whole, 0.0, 1.0));
+  return share_;
+}
+
+OfWork<double> JobEstimate::Ratios() const {
+  OfWork<double> ratios;
+  for (const Work work : kPlanned) {
+    const Known& known = known_[work];
+    if (known.seconds < kMinRatioSeconds || !(known.expected > 0)) continue;
+    ratios[work] = known.seconds / known.expected;
+  }
+  return ratios;
+}
+
+}  // namespace colmap_seapoint
