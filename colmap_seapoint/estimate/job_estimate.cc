@@ -2,16 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace colmap_seapoint {
 namespace {
 
-// Trials of the mapper that follow, as long as the first one runs, and any later one.
-constexpr double kFurtherTrials = 0.5;
-constexpr double kFurtherTrialsOfMany = 0.25;
+// Trials of the mapper that are expected to follow the first, the second ... one, in units of the
+// one that runs. One set in three has more than one trial; it then has three or four, of which the
+// second is that of all matches.
+constexpr double kTrialsToCome[] = {0.4, 1.4, 0.5, 0};
+constexpr double kTrialsToComeOfMany = 0.2;  // after the first one
 constexpr int64_t kManyPictures = 120;
+constexpr double kSecondTrial = 2.5;  // as long as the first one
+constexpr double kLaterTrial = 1.2;   // as long as the one before
 // Of a part: where the extrapolation counts as much as what was expected.
 constexpr double kFirmShare = 0.06;
+constexpr double kFirmShareOfUneven = 0.15;  // the first steps of mapper and densifier are slow
 // Seconds of work that the machine is taken to have done at the expected pace.
 constexpr double kPriorSeconds = 0.5;
 constexpr double kMaxPace = 30;
@@ -47,12 +53,7 @@ JobEstimate::JobEstimate(const OfWork<WorkCost>& costs, const OfWork<bool>& done
 // a refinement of its own.
 void JobEstimate::BeginTrial(int64_t total) {
   Known& trials = known_[Work::kRegistration];
-  if (static_cast<double>(total) > trials.total) {
-    for (const Work work : {Work::kRegistration, Work::kRefinement}) {
-      known_[work].num_parts = 0;
-      known_[work].seconds = 0;
-    }
-  }
+  if (static_cast<double>(total) > trials.total) trials.num_parts = 0;
   trials.total = 0;
   is_over_[Work::kRefinement] = false;
 }
@@ -86,7 +87,8 @@ void JobEstimate::End(Work work, double now) {
 
 void JobEstimate::FinishPart(double now) {
   Known& known = known_[part_.work];
-  known.seconds += now - part_.begin;
+  known.seconds_of_last = now - part_.begin;
+  known.seconds += known.seconds_of_last;
   known.expected += known.cost.seconds_each * (part_.work == Work::kRefinement
                                                    ? static_cast<double>(known.cost.count)
                                                    : part_.done - part_.already_done);
@@ -105,33 +107,44 @@ double JobEstimate::Pace() const {
   return seconds / expected;
 }
 
-// With what little it has done, a part takes at least as long again as nothing was heard of it.
+double JobEstimate::ExpectedPart(Work work, double count) const {
+  const Known& known = known_[work];
+  const double cost = count * known.cost.seconds_each;
+  if (!IsMappers(work)) return Pace() * cost;
+  // While a trial runs, num_parts counts it.
+  const int num_before =
+      known_[Work::kRegistration].num_parts - (part_.work == Work::kOther ? 0 : 1);
+  if (num_before <= 0 || known.seconds_of_last <= 0) return std::max(1.0, Pace()) * cost;
+  if (work == Work::kRefinement) return known.seconds_of_last;
+  return known.seconds_of_last * (num_before == 1 ? kSecondTrial : kLaterTrial);
+}
+
+// With what little it has done, a part takes at least half as long again as nothing was heard of
+// it.
 double JobEstimate::PartSecondsLeft(double now) const {
-  const Known& known = known_[part_.work];
   const double elapsed = std::max(now - part_.begin, 0.0);
-  const double pace = IsMappers(part_.work) ? std::max(1.0, Pace()) : Pace();
   if (part_.work == Work::kRefinement) {
-    const double whole = pace * static_cast<double>(known.cost.count) * known.cost.seconds_each;
+    const auto count = static_cast<double>(known_[part_.work].cost.count);
+    const double whole = ExpectedPart(part_.work, count);
     return whole <= 0 ? 0 : whole * whole / (whole + elapsed);
   }
   const double to_do = std::max(part_.total - part_.already_done, 0.0);
   const double share =
       to_do > 0 ? std::clamp((part_.done - part_.already_done) / to_do, 0.0, 1.0) : 1.0;
   const double worked = ShareOfWork(part_.work, share);
-  const double whole = pace * to_do * known.cost.seconds_each;
-  const double expected = std::max(whole * (1 - worked), share > 0 ? 0 : 0.5 * elapsed);
+  const double expected =
+      std::max(ExpectedPart(part_.work, to_do) * (1 - worked), share > 0 ? 0 : 0.5 * elapsed);
   if (worked <= 0) return expected;
-  const double weight = worked / (worked + kFirmShare);
+  const bool is_uneven = part_.work == Work::kRegistration || part_.work == Work::kDensification;
+  const double weight = worked / (worked + (is_uneven ? kFirmShareOfUneven : kFirmShare));
   return (1 - weight) * expected + weight * elapsed * (1 - worked) / worked;
 }
 
-// As long as those before took on the average, where there was one.
+// Of the trial that runs, or else of the next one.
 double JobEstimate::TrialSecondsOf(Work work, double now) const {
-  const Known& known = known_[work];
-  const double expected =
-      std::max(1.0, Pace()) * static_cast<double>(known.cost.count) * known.cost.seconds_each;
-  const double before = known.seconds > 0 ? known.seconds / std::max(1, known.num_parts) : expected;
-  return work == part_.work ? std::max(before, now - part_.begin + PartSecondsLeft(now)) : before;
+  if (work == part_.work) return now - part_.begin + PartSecondsLeft(now);
+  if (part_.work == Work::kRefinement) return known_[work].seconds_of_last;
+  return ExpectedPart(work, static_cast<double>(known_[work].cost.count));
 }
 
 // Of a kind that is not over, beyond the part of it that is under way.
@@ -148,10 +161,15 @@ double JobEstimate::SecondsLeft(double now) const {
     if (!is_over_[work]) left += SecondsToCome(work, now);
   }
   if (is_over_[Work::kRefinement]) return left;
-  const bool is_of_many = known_[Work::kRegistration].cost.count >= kManyPictures;
-  return left +
-         (is_of_many ? kFurtherTrialsOfMany : kFurtherTrials) *
-             (TrialSecondsOf(Work::kRegistration, now) + TrialSecondsOf(Work::kRefinement, now));
+  return left + TrialsToCome() * (TrialSecondsOf(Work::kRegistration, now) +
+                                  TrialSecondsOf(Work::kRefinement, now));
+}
+
+double JobEstimate::TrialsToCome() const {
+  const Known& trials = known_[Work::kRegistration];
+  const auto num_before = static_cast<size_t>(std::max(0, trials.num_parts - 1));
+  if (num_before == 0 && trials.cost.count >= kManyPictures) return kTrialsToComeOfMany;
+  return kTrialsToCome[std::min(num_before, std::size(kTrialsToCome) - 1)];
 }
 
 double JobEstimate::Share(double now) {

@@ -4,8 +4,8 @@
 // Each kind of work has an expected count and expected seconds each. What is under way is
 // extrapolated from what it has done, the more so the further it is; what is to come is multiplied
 // by the pace of what is done, but for the mapper's: a hard survey takes it ten times longer, and
-// says nothing of the machine. A mapper's trial that leaves pictures over is followed by others, as
-// one in two is; so half a trial more is expected while the first one runs.
+// says nothing of the machine. A mapper's trial that leaves pictures over is followed by others:
+// what these take on the average is added, less at the first trial, more at the second.
 #pragma once
 
 #include "colmap_seapoint/estimate/work_costs.h"
@@ -34,9 +34,10 @@ class JobEstimate {
   // What is known of a kind of work.
   struct Known {
     WorkCost cost;
-    double total = 0;     // of all parts that have begun, what was there already too
-    double expected = 0;  // seconds of what was done here
-    double seconds = 0;   // that it took
+    double total = 0;            // of all parts that have begun, what was there already too
+    double expected = 0;         // seconds of what was done here
+    double seconds = 0;          // that it took
+    double seconds_of_last = 0;  // part
     int num_parts = 0;
   };
   // The part that is under way.
@@ -50,6 +51,8 @@ class JobEstimate {
   void FinishPart(double now);
   double Pace() const;
   double PartSecondsLeft(double now) const;
+  double ExpectedPart(Work work, double count) const;
+  double TrialsToCome() const;
   double TrialSecondsOf(Work work, double now) const;
   double SecondsToCome(Work work, double now) const;
 

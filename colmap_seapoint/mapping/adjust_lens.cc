@@ -72,7 +72,7 @@ std::optional<SparseModel> MeasuredAgain(const SparseModel& model, const Adjustm
 }
 
 std::string Refusal(const char* what, const std::string& fault) {
-  return fault.empty() ? "" : std::string("; ") + what + " refused: " + fault;
+  return fault.empty() ? "" : std::string("; ") + what + " kept as the mapper left it: " + fault;
 }
 
 }  // namespace

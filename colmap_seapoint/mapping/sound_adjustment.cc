@@ -57,7 +57,8 @@ std::map<uint32_t, LensFreedom> LensesToTie(const SparseModel& before, const Spa
 }  // namespace
 
 SoundAdjustment AdjustSoundly(const SparseModel& before, const LensLimits& limits) {
-  if (before.images.size() < kMinPictures) return {{}, "too few pictures"};
+  if (before.images.size() < kMinPictures)
+    return {{}, "it takes three pictures at least to tell the lens"};
   BundleAdjustmentOptions options;
   options.refine_principal_point = limits.frees_principal_point;
   options.num_threads = limits.num_threads;

@@ -135,7 +135,8 @@ SequenceReport Densify(const PartialDensifierOptions& options, const SparseModel
   };
   callbacks.progress = [&](int64_t done, int64_t total) {
     if (!progress) {
-      progress = std::make_unique<Progress>("Densification steps", total, 0, Work::kDensification);
+      progress =
+          std::make_unique<Progress>("Making the cloud, steps", total, 0, Work::kDensification);
     }
     progress->Update(done);
   };

@@ -7,14 +7,15 @@
 #include <vector>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/estimate/preflight.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/content_hash.h"
 #include "colmap_seapoint/mapping/second_chance.h"
 #include "colmap_seapoint/pipeline/densify_models.h"
 #include "colmap_seapoint/pipeline/extract.h"
-#include "colmap_seapoint/pipeline/job_plan.h"
 #include "colmap_seapoint/pipeline/map.h"
 #include "colmap_seapoint/pipeline/match.h"
 #include "colmap_seapoint/pipeline/scale_models.h"
@@ -48,6 +49,39 @@ Stage DatabaseStage(const Options& options, const std::vector<ReadablePicture>& 
             " " + info.camera_key;
   }
   return {"database", kMatchingVersion, text, ""};
+}
+
+JobSize SizeOf(const Options& options, const std::vector<ReadablePicture>& pictures) {
+  const bool matches_all_pairs = MatchesAllPairs(options, pictures.size());
+  JobSize size;
+  size.num_pictures = static_cast<int64_t>(pictures.size());
+  for (const ReadablePicture& picture : pictures) {
+    size.megapixels += 1e-6 * picture.info.width * picture.info.height;
+  }
+  size.finds_look_alikes = !matches_all_pairs && options.pairs.loop_detection;
+  size.num_pairs = matches_all_pairs
+                       ? size.num_pictures * (size.num_pictures - 1) / 2
+                       : ExpectedSequentialPairs(size.num_pictures, options.pairs.overlap,
+                                                 size.finds_look_alikes);
+  size.step = options.densification.step;
+  size.writes_maps = options.densification.write_maps;
+  size.num_threads = EffectiveNumThreads(options.run.num_threads);
+  return size;
+}
+
+// Whether a stage is up to date is known when its turn comes; here that its record is there, beside
+// a database that is begun with the same pictures and options, is enough.
+OfWork<bool> DoneBefore(const Stage& database, const WorkspaceState& state) {
+  OfWork<bool> done;
+  const auto begun = state.Read(database.name);
+  if (!begun || begun->value("fingerprint", "") != StageFingerprint(database)) return done;
+  if (!state.Read("mapper")) return done;
+  for (const Work work :
+       {Work::kPictures, Work::kLookAlikes, Work::kPairs, Work::kRegistration, Work::kRefinement}) {
+    done[work] = true;
+  }
+  done[Work::kDensification] = done[Work::kMaps] = state.Read("dense_0").has_value();
+  return done;
 }
 
 // The stage that finds the untied pictures: all that decides which they are, but for what the
@@ -197,9 +231,15 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& opt
   report.options.insert(report.options.end(), options.mapper.begin(), options.mapper.end());
 
   const PictureSet pictures = ReadPictureSet(ExtractorOptions(options, workspace));
+  if (pictures.readable.size() == 1) {
+    throw Error(options.image_path,
+                "holds one picture that can be used, " + pictures.readable.front().name,
+                "depth takes two pictures at least that show the same place from different points: "
+                "add more, which overlap by half or more");
+  }
   const Stage begin = DatabaseStage(options, pictures.readable);
-  JobProgress progress(PlanJob(options, workspace, pictures.readable,
-                               MatchesAllPairs(options, pictures.readable.size()), begin, state));
+  JobProgress progress(PlanJob(SizeOf(options, pictures.readable), workspace.root,
+                               options.check_disk, DoneBefore(begin, state)));
   ColmapDatabase database =
       OpenWorkspaceDatabase(workspace.database, pictures.readable, options.reader, begin, &state);
   ExtractAndMatch(options, workspace, pictures, SecondChanceStage(options, begin), &database,

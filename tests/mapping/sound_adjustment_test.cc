@@ -37,7 +37,7 @@ TEST(SoundAdjustmentTest, TwoFocalLengthsThatNoLensHasBecomeOne) {
 TEST(SoundAdjustmentTest, WhatIsNotSoundNamesItsFault) {
   EXPECT_EQ(AdjustSoundly(SurveyOfAspect(1.004), {1 + 1e-9}).fault,
             "the focal length moved too far");
-  EXPECT_EQ(AdjustSoundly(SparseModel(), {}).fault, "too few pictures");
+  EXPECT_EQ(AdjustSoundly(SparseModel(), {}).fault, "it takes three pictures at least to tell the lens");
 }
 
 TEST(SoundAdjustmentTest, TheSameForAnyNumberOfThreads) {

@@ -40,26 +40,66 @@ bool HasImageExtension(const std::filesystem::path& path) {
   return kExtensions.count(LowerExtension(path)) > 0;
 }
 
-// Names of all pictures below `folder`, unsorted. Links to files are followed, links to folders
-// are not: they may go in circles.
-std::vector<std::string> FindImages(const std::filesystem::path& folder) {
-  std::vector<std::string> names;
-  std::filesystem::recursive_directory_iterator entry(folder), end;
-  for (; entry != end; ++entry) {
-    const std::filesystem::path& path = entry->path();
-    std::error_code ignored;
-    if (path.filename().string().front() == '.') {
-      if (entry->is_directory(ignored)) entry.disable_recursion_pending();
-      continue;
-    }
-    if (!HasImageExtension(path) || !entry->is_regular_file(ignored)) continue;
-    names.push_back(path.lexically_relative(folder).generic_string());
-    if (!IsSafeImageName(names.back())) {
-      throw Error(path.string(), "has a backslash or a control character in its name",
-                  "rename the picture");
+bool IsWithin(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  const auto relative = path.lexically_relative(folder);
+  return !relative.empty() && *relative.begin() != "..";
+}
+
+// Walks a folder and those below it, links to folders included: each is walked once, so that links
+// that go in circles, or to what is read anyway, do no harm.
+class PictureFinder {
+ public:
+  explicit PictureFinder(const std::filesystem::path& root) : root_(root) {
+    walked_.push_back(std::filesystem::canonical(root));
+  }
+
+  // Names of all pictures below `folder`, in the order of their names in each folder.
+  void Find(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::directory_entry> entries(
+        std::filesystem::directory_iterator(folder), {});
+    std::sort(entries.begin(), entries.end());
+    for (const auto& entry : entries) {
+      std::error_code ignored;
+      if (entry.path().filename().string().front() == '.') continue;
+      if (entry.is_directory(ignored)) {
+        if (!entry.is_symlink(ignored) || IsNew(entry.path())) Find(entry.path());
+      } else if (HasImageExtension(entry.path()) && entry.is_regular_file(ignored)) {
+        AddPicture(entry.path());
+      }
     }
   }
-  return names;
+
+  std::vector<std::string> Names() && { return std::move(names_); }
+
+ private:
+  // False for a link to what is walked, or to what holds it.
+  bool IsNew(const std::filesystem::path& link) {
+    std::error_code error;
+    const auto target = std::filesystem::canonical(link, error);
+    if (error) return false;
+    for (const auto& folder : walked_) {
+      if (IsWithin(target, folder) || IsWithin(folder, target)) return false;
+    }
+    walked_.push_back(target);
+    return true;
+  }
+
+  void AddPicture(const std::filesystem::path& path) {
+    names_.push_back(path.lexically_relative(root_).generic_string());
+    if (IsSafeImageName(names_.back())) return;
+    throw Error(path.string(), "has a backslash or a control character in its name",
+                "rename the picture");
+  }
+
+  std::filesystem::path root_;
+  std::vector<std::filesystem::path> walked_;
+  std::vector<std::string> names_;
+};
+
+std::vector<std::string> FindImages(const std::filesystem::path& folder) {
+  PictureFinder finder(folder);
+  finder.Find(folder);
+  return std::move(finder).Names();
 }
 
 // 1 or 3 channels.

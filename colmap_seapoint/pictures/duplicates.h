@@ -1,0 +1,16 @@
+// The same picture twice: a folder copied beside itself, a card read twice (ours).
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "colmap_seapoint/pictures/image_reader.h"
+
+namespace colmap_seapoint {
+
+// Leaves out every picture that has, byte for byte, what one before it has; says so in one line. A
+// picture without a partner of its size is not read.
+void LeaveOutDuplicates(const std::filesystem::path& image_path, int num_threads,
+                        std::vector<ReadablePicture>* pictures, RunReport* report);
+
+}  // namespace colmap_seapoint
