@@ -1,14 +1,14 @@
 #include "colmap_seapoint/base/progress.h"
 
+#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <mutex>
+#include <functional>
+#include <system_error>
 #include <vector>
-
-#include "colmap_seapoint/base/heartbeat.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -114,6 +114,36 @@ std::string PresentLine() {
   return "Working since " + DurationText(Seconds(Clock::now() - program_start));
 }
 
+// Says how far the work is where nothing has been said for long, or, on a terminal, where the
+// rewriting line is old.
+void ShowIfSilent() {
+  if (!IsEnabled(LogLevel::kInfo)) return;
+  WorkObserver* const all = observer;
+  const double plain = all != nullptr ? std::min(all->SecondsBetweenLines(), kMaxSilenceSeconds)
+                                      : kMaxSilenceSeconds;
+  const double longest = IsTerminal() ? kRewriteBeatSeconds : plain;
+  if (SecondsOfSilence() < longest) return;
+  if (IsTerminal() && !HasSomethingToCount()) return;
+  ShowLine(PresentLine());
+}
+
+constexpr std::chrono::milliseconds kBeat{500};
+
+// Signals are for the threads that work: a child's end, say, is waited for there.
+std::thread StartWithoutSignals(const std::function<void()>& run) {
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  std::thread thread;
+  try {
+    thread = std::thread(run);
+  } catch (const std::system_error&) {
+    // Silence is no reason to fail.
+  }
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  return thread;
+}
+
 }  // namespace
 
 void SetLogLevel(LogLevel level) { log_level = static_cast<int>(level); }
@@ -142,17 +172,6 @@ std::string DurationText(double seconds) {
 }
 
 void SetWorkObserver(WorkObserver* of_all_work) { observer = of_all_work; }
-
-void ShowIfSilent() {
-  if (!IsEnabled(LogLevel::kInfo)) return;
-  WorkObserver* const all = observer;
-  const double plain = all != nullptr ? std::min(all->SecondsBetweenLines(), kMaxSilenceSeconds)
-                                      : kMaxSilenceSeconds;
-  const double longest = IsTerminal() ? kRewriteBeatSeconds : plain;
-  if (SecondsOfSilence() < longest) return;
-  if (IsTerminal() && !HasSomethingToCount()) return;
-  ShowLine(PresentLine());
-}
 
 Progress::Progress(const std::string& label, int64_t total, int64_t already_done, Work work)
     : label_(label),
@@ -221,6 +240,22 @@ void Progress::Finish() {
   if (WorkObserver* const all = observer) all->End(work_);
   LogInfo(label_ + ": " + std::to_string(total_) + " in " +
           DurationText(Seconds(Clock::now() - start_)));
+}
+
+Heartbeat::Heartbeat() {
+  thread_ = StartWithoutSignals([this] {
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (!ended_.wait_for(lock, kBeat, [this] { return is_over_; })) ShowIfSilent();
+  });
+}
+
+Heartbeat::~Heartbeat() {
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    is_over_ = true;
+  }
+  ended_.notify_all();
+  if (thread_.joinable()) thread_.join();
 }
 
 }  // namespace colmap_seapoint

@@ -4,8 +4,11 @@
 
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
+#include <mutex>
 #include <string>
+#include <thread>
 
 #include "colmap_seapoint/base/work.h"
 
@@ -59,8 +62,24 @@ class Progress {
   std::atomic<int64_t> done_;
 };
 
-// For the heartbeat: says how far the work is when nothing has been said for kMaxSilenceSeconds,
-// or, on a terminal, when the rewriting line is old.
-void ShowIfSilent();
+inline constexpr double kMaxSilenceSeconds = 20;
+
+// No silence: while it lives, a line says at least every kMaxSilenceSeconds how far the work is,
+// also where the work itself has nothing to count (a search in COLMAP, a matrix that is solved). On
+// a terminal the rewriting line is kept up to date.
+class Heartbeat {
+ public:
+  // A thread that the system does not give is done without.
+  Heartbeat();
+  ~Heartbeat();
+  Heartbeat(const Heartbeat&) = delete;
+  Heartbeat& operator=(const Heartbeat&) = delete;
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  bool is_over_ = false;
+  std::thread thread_;
+};
 
 }  // namespace colmap_seapoint

@@ -5,7 +5,6 @@
 #include <variant>
 
 #include "colmap_seapoint/base/error.h"
-#include "colmap_seapoint/base/heartbeat.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/base/version.h"
 #include "colmap_seapoint/cli/command.h"

@@ -38,6 +38,13 @@ double ShareOfWork(Work work, double share) {
   return work == Work::kRegistration ? std::pow(share, 1.2) : share;
 }
 
+// While the trial of this number, from 1 on, runs; 0: while none has begun.
+double TrialsToCome(int trial, int64_t num_pictures) {
+  const auto num_before = static_cast<size_t>(std::max(0, trial - 1));
+  if (num_before == 0 && num_pictures >= kManyPictures) return kTrialsToComeOfMany;
+  return kTrialsToCome[std::min(num_before, std::size(kTrialsToCome) - 1)];
+}
+
 }  // namespace
 
 JobEstimate::JobEstimate(const OfWork<WorkCost>& costs, const OfWork<bool>& done_before)
@@ -49,20 +56,16 @@ JobEstimate::JobEstimate(const OfWork<WorkCost>& costs, const OfWork<bool>& done
   }
 }
 
-// A pilot of fewer pictures comes before the first trial; a trial is followed by others, each with
-// a refinement of its own.
-void JobEstimate::BeginTrial(int64_t total) {
-  Known& trials = known_[Work::kRegistration];
-  if (static_cast<double>(total) > trials.total) trials.num_parts = 0;
-  trials.total = 0;
-  is_over_[Work::kRefinement] = false;
-}
-
-// A refinement consists of several adjustments, with other work between them.
+// A refinement consists of several adjustments, with other work between them. A pilot of fewer
+// pictures comes before the mapper's first trial; each trial has a refinement of its own.
 void JobEstimate::Begin(Work work, double now, int64_t total, int64_t already_done) {
   if (work == Work::kOther || (work == Work::kRefinement && part_.work == work)) return;
   FinishPart(now);
-  if (work == Work::kRegistration) BeginTrial(total);
+  if (work == Work::kRegistration) {
+    if (static_cast<double>(total) > known_[work].total) known_[work].num_parts = 0;
+    known_[work].total = 0;
+    is_over_[Work::kRefinement] = false;
+  }
   for (const Work earlier : kPlanned) {
     if (earlier < work) is_over_[earlier] = true;
   }
@@ -70,13 +73,15 @@ void JobEstimate::Begin(Work work, double now, int64_t total, int64_t already_do
   Known& known = known_[work];
   ++known.num_parts;
   known.total += static_cast<double>(std::max<int64_t>(total, 0));
-  part_ = {work, now, static_cast<double>(total), static_cast<double>(already_done),
-           static_cast<double>(already_done)};
+  const auto already = static_cast<double>(already_done);
+  part_ = {work, now, now, static_cast<double>(total), already, already};
 }
 
-void JobEstimate::Advance(Work work, int64_t done) {
+void JobEstimate::Advance(Work work, double now, int64_t done) {
   // The mapper counts from the beginning again when it begins another model.
-  if (work == part_.work) part_.done = std::max(part_.done, static_cast<double>(done));
+  if (work != part_.work || !(static_cast<double>(done) > part_.done)) return;
+  part_.done = static_cast<double>(done);
+  part_.reached = now;
 }
 
 void JobEstimate::End(Work work, double now) {
@@ -101,8 +106,13 @@ double JobEstimate::Pace() const {
     const Known& known = known_[work];
     if (IsMappers(work)) continue;
     const double max_pace = work == Work::kPairs ? kMaxPaceOfPairs : kMaxPace;
-    expected += known.expected;
-    seconds += std::min(known.seconds, max_pace * known.expected);
+    double expected_of_work = known.expected, seconds_of_work = known.seconds;
+    if (work == part_.work) {
+      expected_of_work += (part_.done - part_.already_done) * known.cost.seconds_each;
+      seconds_of_work += part_.reached - part_.begin;
+    }
+    expected += expected_of_work;
+    seconds += std::min(seconds_of_work, max_pace * expected_of_work);
   }
   return seconds / expected;
 }
@@ -114,7 +124,7 @@ double JobEstimate::ExpectedPart(Work work, double count) const {
   // While a trial runs, num_parts counts it.
   const int num_before =
       known_[Work::kRegistration].num_parts - (part_.work == Work::kOther ? 0 : 1);
-  if (num_before <= 0 || known.seconds_of_last <= 0) return std::max(1.0, Pace()) * cost;
+  if (num_before <= 0 || known.seconds_of_last <= 0) return Pace() * cost;
   if (work == Work::kRefinement) return known.seconds_of_last;
   return known.seconds_of_last * (num_before == 1 ? kSecondTrial : kLaterTrial);
 }
@@ -147,29 +157,23 @@ double JobEstimate::TrialSecondsOf(Work work, double now) const {
   return ExpectedPart(work, static_cast<double>(known_[work].cost.count));
 }
 
-// Of a kind that is not over, beyond the part of it that is under way.
-double JobEstimate::SecondsToCome(Work work, double now) const {
-  const Known& known = known_[work];
-  if (IsMappers(work)) return work == part_.work ? 0 : TrialSecondsOf(work, now);
-  const double count = std::max(static_cast<double>(known.cost.count) - known.total, 0.0);
-  return Pace() * count * known.cost.seconds_each;
-}
-
 double JobEstimate::SecondsLeft(double now) const {
   double left = part_.work == Work::kOther ? 0 : PartSecondsLeft(now);
   for (const Work work : kPlanned) {
-    if (!is_over_[work]) left += SecondsToCome(work, now);
+    const Known& known = known_[work];
+    if (is_over_[work]) continue;
+    if (IsMappers(work)) {
+      left += work == part_.work ? 0 : TrialSecondsOf(work, now);
+    } else {
+      left +=
+          ExpectedPart(work, std::max(static_cast<double>(known.cost.count) - known.total, 0.0));
+    }
   }
   if (is_over_[Work::kRefinement]) return left;
-  return left + TrialsToCome() * (TrialSecondsOf(Work::kRegistration, now) +
-                                  TrialSecondsOf(Work::kRefinement, now));
-}
-
-double JobEstimate::TrialsToCome() const {
   const Known& trials = known_[Work::kRegistration];
-  const auto num_before = static_cast<size_t>(std::max(0, trials.num_parts - 1));
-  if (num_before == 0 && trials.cost.count >= kManyPictures) return kTrialsToComeOfMany;
-  return kTrialsToCome[std::min(num_before, std::size(kTrialsToCome) - 1)];
+  return left +
+         TrialsToCome(trials.num_parts, trials.cost.count) *
+             (TrialSecondsOf(Work::kRegistration, now) + TrialSecondsOf(Work::kRefinement, now));
 }
 
 double JobEstimate::Share(double now) {

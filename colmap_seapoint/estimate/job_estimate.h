@@ -20,7 +20,7 @@ class JobEstimate {
   // `now`: seconds since the job began, never less than at an earlier call. Counts are taken as
   // they come: more than the total, and a total of 0, are no errors.
   void Begin(Work work, double now, int64_t total, int64_t already_done);
-  void Advance(Work work, int64_t done);
+  void Advance(Work work, double now, int64_t done);
   void End(Work work, double now);
 
   double SecondsLeft(double now) const;
@@ -43,18 +43,16 @@ class JobEstimate {
   // The part that is under way.
   struct Part {
     Work work = Work::kOther;
-    double begin = 0;  // seconds
+    double begin = 0;    // seconds
+    double reached = 0;  // when `done` was told
     double total = 0, already_done = 0, done = 0;
   };
 
-  void BeginTrial(int64_t total);
   void FinishPart(double now);
   double Pace() const;
   double PartSecondsLeft(double now) const;
   double ExpectedPart(Work work, double count) const;
-  double TrialsToCome() const;
   double TrialSecondsOf(Work work, double now) const;
-  double SecondsToCome(Work work, double now) const;
 
   OfWork<Known> known_;
   OfWork<bool> is_over_;  // nothing more of it is to come

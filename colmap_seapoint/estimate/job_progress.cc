@@ -34,7 +34,7 @@ void JobProgress::Begin(Work work, const std::string& label, int64_t total, int6
 
 void JobProgress::Advance(Work work, int64_t done) {
   std::lock_guard<std::mutex> lock(mutex_);
-  estimate_.Advance(work, done);
+  estimate_.Advance(work, Now(), done);
   done_ = done;
 }
 

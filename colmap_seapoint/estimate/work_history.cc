@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <vector>
 
 #include "colmap_seapoint/base/median.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/files/input_stream.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -25,8 +25,8 @@ std::vector<RunRatios> ReadRuns(const std::filesystem::path& path) {
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
   if (error || size > kMaxFileBytes) return {};
-  std::ifstream file(path);
-  const Json json = Json::parse(file, nullptr, false);
+  const auto file = OpenIfThere(path);
+  const Json json = file != nullptr ? Json::parse(*file, nullptr, false) : Json();
   if (!json.is_object() || !json.contains(kRuns) || !json[kRuns].is_array()) return {};
   std::vector<RunRatios> runs;
   for (const Json& run : json[kRuns]) {
@@ -58,7 +58,12 @@ std::optional<std::filesystem::path> HistoryPath() {
 }
 
 OfWork<double> ReadMachineRatios(const std::filesystem::path& history) {
-  const std::vector<RunRatios> runs = ReadRuns(history);
+  std::vector<RunRatios> runs;
+  try {
+    runs = ReadRuns(history);
+  } catch (const std::exception&) {
+    // A file that may not be read tells nothing.
+  }
   OfWork<double> machine;
   for (size_t i = 0; i < kNumWorks; ++i) {
     std::vector<double> ratios = {1};

@@ -40,7 +40,7 @@ double RoundLength(double most) {
 
 std::string LengthText(double length, const std::string& unit) {
   char number[32];
-  std::snprintf(number, sizeof(number), "%.6g", length);
+  std::snprintf(number, sizeof(number), length < 1000 ? "%.3g" : "%.0f", length);
   return number + (" " + unit);
 }
 

@@ -10,7 +10,7 @@ namespace colmap_seapoint {
 // The length of 1, 2 or 5 times a power of ten that is nearest below `most`; 0 where there is none.
 double RoundLength(double most);
 
-// "0.5 m", "200 units": 6 digits at most, without trailing zeros.
+// "0.5 m", "200 units": 3 digits, without trailing zeros.
 std::string LengthText(double length, const std::string& unit);
 
 // White, with a black border, into the lower left corner: a bar of a round length, about a fifth of

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "colmap_seapoint/base/heartbeat.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/estimate/job_progress.h"
 
@@ -33,7 +32,7 @@ class SimulatedJob {
     estimate_.Begin(work, now_, count, 0);
     for (int64_t i = 1; i <= count; ++i) {
       now_ += slowness_ * seconds_each;
-      estimate_.Advance(work, i);
+      estimate_.Advance(work, now_, i);
       const double share = estimate_.Share(now_);
       EXPECT_GE(share, last_share_);
       EXPECT_LE(share, 1);
@@ -92,7 +91,7 @@ TEST(JobEstimate, TellsTheRatioOfWhatWorkTook) {
 TEST(JobEstimate, AHardMapperSaysNothingOfTheMachine) {
   JobEstimate estimate(PlainCosts(), {});
   estimate.Begin(Work::kRegistration, 0, 100, 0);
-  estimate.Advance(Work::kRegistration, 100);
+  estimate.Advance(Work::kRegistration, 5000, 100);
   estimate.End(Work::kRegistration, 5000);
   estimate.Begin(Work::kDensification, 6000, 300, 0);
   EXPECT_NEAR(estimate.SecondsLeft(6000), 300, 1);
@@ -102,7 +101,7 @@ TEST(JobEstimate, ASecondTrialIsExpectedToTakeLongerAndToBeFollowed) {
   JobEstimate estimate(PlainCosts(), {});
   const auto trial = [&](double begin, double end) {
     estimate.Begin(Work::kRegistration, begin, 100, 0);
-    estimate.Advance(Work::kRegistration, 100);
+    estimate.Advance(Work::kRegistration, end, 100);
     estimate.End(Work::kRegistration, end);
   };
   trial(0, 100);
@@ -114,7 +113,7 @@ TEST(JobEstimate, ASecondTrialIsExpectedToTakeLongerAndToBeFollowed) {
 TEST(JobEstimate, APilotIsNoTrial) {
   JobEstimate with_pilot(PlainCosts(), {}), without(PlainCosts(), {});
   with_pilot.Begin(Work::kRegistration, 0, 60, 0);
-  with_pilot.Advance(Work::kRegistration, 60);
+  with_pilot.Advance(Work::kRegistration, 100, 60);
   with_pilot.End(Work::kRegistration, 100);
   with_pilot.Begin(Work::kRegistration, 100, 100, 0);
   without.Begin(Work::kRegistration, 100, 100, 0);
@@ -130,19 +129,19 @@ TEST(JobEstimate, WhatAnEarlierRunDidCountsAsDone) {
   EXPECT_NEAR(estimate.Share(0), 400.0 / 700, 1e-6);
   // What is there already is no measure of speed.
   estimate.Begin(Work::kPairs, 0, 200, 199);
-  estimate.Advance(Work::kPairs, 200);
+  estimate.Advance(Work::kPairs, 0.5, 200);
   estimate.End(Work::kPairs, 0.5);
-  EXPECT_NEAR(estimate.SecondsLeft(1), 300 + 400 + 160, 150);
+  EXPECT_NEAR(estimate.SecondsLeft(1), 300, 1e-6);
 }
 
 TEST(JobEstimate, OddCountsAreNoErrors) {
   JobEstimate estimate(OfWork<WorkCost>(), {});
   EXPECT_EQ(estimate.SecondsLeft(0), 0);
   estimate.Begin(Work::kPictures, 0, 0, 0);
-  estimate.Advance(Work::kPictures, 7);
+  estimate.Advance(Work::kPictures, 0.5, 7);
   estimate.Begin(Work::kPairs, 1, 5, 9);
-  estimate.Advance(Work::kPairs, 3);
-  estimate.Advance(Work::kPictures, 3);  // not under way
+  estimate.Advance(Work::kPairs, 2, 3);
+  estimate.Advance(Work::kPictures, 2, 3);  // not under way
   estimate.End(Work::kOther, 2);
   EXPECT_TRUE(std::isfinite(estimate.SecondsLeft(3)));
   EXPECT_GE(estimate.Share(3), 0);
