@@ -19,11 +19,13 @@ constexpr double kLaterTrial = 1.2;   // as long as the one before
 constexpr double kFirmShare = 0.06;
 constexpr double kFirmShareOfUneven = 0.15;  // the first steps of mapper and densifier are slow
 // Seconds of work that the machine is taken to have done at the expected pace.
-constexpr double kPriorSeconds = 0.5;
+constexpr double kPriorSeconds = 0.25;
 constexpr double kMaxPace = 30;
-// Matching hard pairs takes longer, on any machine.
-constexpr double kMaxPaceOfPairs = 2.5;
-constexpr double kMinRatioSeconds = 0.5;  // for the history
+// Matching hard pairs takes longer, on any machine: what it takes beyond this multiple of the
+// pictures' pace says nothing of the machine.
+constexpr double kPairsToPictures = 2.5;
+constexpr double kMinPictureSeconds = 0.02;  // of work, that show a pace
+constexpr double kMinRatioSeconds = 0.5;     // for the history
 
 constexpr Work kPlanned[] = {Work::kPictures,     Work::kLookAlikes, Work::kPairs,
                              Work::kRegistration, Work::kRefinement, Work::kDensification,
@@ -101,18 +103,22 @@ void JobEstimate::FinishPart(double now) {
 }
 
 double JobEstimate::Pace() const {
-  double expected = kPriorSeconds, seconds = kPriorSeconds;
+  double expected = kPriorSeconds, seconds = kPriorSeconds, pace_of_pictures = 1;
   for (const Work work : kPlanned) {
-    const Known& known = known_[work];
     if (IsMappers(work)) continue;
-    const double max_pace = work == Work::kPairs ? kMaxPaceOfPairs : kMaxPace;
-    double expected_of_work = known.expected, seconds_of_work = known.seconds;
+    double expected_of_work = known_[work].expected, seconds_of_work = known_[work].seconds;
     if (work == part_.work) {
-      expected_of_work += (part_.done - part_.already_done) * known.cost.seconds_each;
+      expected_of_work += (part_.done - part_.already_done) * known_[work].cost.seconds_each;
       seconds_of_work += part_.reached - part_.begin;
     }
+    const double max_pace =
+        work == Work::kPairs ? kPairsToPictures * std::max(1.0, pace_of_pictures) : kMaxPace;
+    seconds_of_work = std::min(seconds_of_work, max_pace * expected_of_work);
+    if (work == Work::kPictures && expected_of_work > kMinPictureSeconds) {
+      pace_of_pictures = seconds_of_work / expected_of_work;
+    }
     expected += expected_of_work;
-    seconds += std::min(seconds_of_work, max_pace * expected_of_work);
+    seconds += seconds_of_work;
   }
   return seconds / expected;
 }

@@ -51,8 +51,8 @@ std::vector<std::string> HashesOfLikeSizes(const fs::path& image_path, int num_t
 
 }  // namespace
 
-void LeaveOutDuplicates(const fs::path& image_path, int num_threads,
-                        std::vector<ReadablePicture>* pictures, RunReport* report) {
+std::vector<RunReport::LeftOut> LeaveOutDuplicates(const fs::path& image_path, int num_threads,
+                                                   std::vector<ReadablePicture>* pictures) {
   const std::vector<std::string> hashes = HashesOfLikeSizes(image_path, num_threads, *pictures);
   std::map<std::string, std::string> first_of;  // hash -> name
   std::vector<ReadablePicture> kept;
@@ -67,13 +67,13 @@ void LeaveOutDuplicates(const fs::path& image_path, int num_threads,
     }
   }
   *pictures = std::move(kept);
-  if (left_out.empty()) return;
+  if (left_out.empty()) return left_out;
   LogWarning(std::to_string(left_out.size()) +
              (left_out.size() == 1
                   ? " picture is there twice and left out once: "
                   : " pictures are there twice and left out once, the first one: ") +
              left_out.front().name + " " + left_out.front().reason);
-  report->left_out.insert(report->left_out.end(), left_out.begin(), left_out.end());
+  return left_out;
 }
 
 }  // namespace colmap_seapoint

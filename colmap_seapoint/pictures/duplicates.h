@@ -8,9 +8,10 @@
 
 namespace colmap_seapoint {
 
-// Leaves out every picture that has, byte for byte, what one before it has; says so in one line. A
-// picture without a partner of its size is not read.
-void LeaveOutDuplicates(const std::filesystem::path& image_path, int num_threads,
-                        std::vector<ReadablePicture>* pictures, RunReport* report);
+// Takes out every picture that has, byte for byte, what one before it has, says so in one line, and
+// returns them. A picture without a partner of its size is not read.
+std::vector<RunReport::LeftOut> LeaveOutDuplicates(const std::filesystem::path& image_path,
+                                                   int num_threads,
+                                                   std::vector<ReadablePicture>* pictures);
 
 }  // namespace colmap_seapoint

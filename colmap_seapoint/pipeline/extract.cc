@@ -14,7 +14,6 @@
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "colmap_seapoint/io/outputs/run_lock.h"
-#include "colmap_seapoint/pictures/duplicates.h"
 #include "colmap_seapoint/pipeline/output_paths.h"
 #include "colmap_seapoint/system/memory_budget.h"
 #include "feature/extract_features.h"
@@ -224,7 +223,6 @@ PictureSet ReadPictureSet(const FeatureExtractorOptions& options) {
   PictureSet pictures;
   const auto names = ListPictures(options.image_path, options.image_list_path, &report);
   pictures.readable = ReadHeaders(options.image_path, names, options.run.num_threads, &report);
-  LeaveOutDuplicates(options.image_path, options.run.num_threads, &pictures.readable, &report);
   pictures.num_listed = report.images_in;
   pictures.left_out = report.left_out;
   if (pictures.readable.empty()) Finish(options, report);

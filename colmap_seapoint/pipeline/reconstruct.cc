@@ -14,6 +14,7 @@
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/content_hash.h"
 #include "colmap_seapoint/mapping/second_chance.h"
+#include "colmap_seapoint/pictures/duplicates.h"
 #include "colmap_seapoint/pipeline/densify_models.h"
 #include "colmap_seapoint/pipeline/extract.h"
 #include "colmap_seapoint/pipeline/map.h"
@@ -124,6 +125,20 @@ FeatureExtractorOptions ExtractorOptions(const Options& options, const Workspace
   return extractor;
 }
 
+// Each once. Throws Error when that leaves a single one.
+PictureSet ReadPictures(const Options& options, const Workspace& workspace) {
+  PictureSet pictures = ReadPictureSet(ExtractorOptions(options, workspace));
+  for (auto& twin :
+       LeaveOutDuplicates(workspace.images, options.run.num_threads, &pictures.readable)) {
+    pictures.left_out.push_back(std::move(twin));
+  }
+  if (pictures.readable.size() > 1) return pictures;
+  throw Error(options.image_path,
+              "holds one picture that can be used, " + pictures.readable.front().name,
+              "depth takes two pictures at least that show the same place from different points: "
+              "add more, which overlap by half or more");
+}
+
 RunReport MatchAll(const Options& options, const Workspace& workspace, size_t num_pictures,
                    ColmapDatabase* database) {
   if (MatchesAllPairs(options, num_pictures)) {
@@ -230,13 +245,7 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& opt
   RunReport report = StartReport("automatic_reconstructor", options, options.run);
   report.options.insert(report.options.end(), options.mapper.begin(), options.mapper.end());
 
-  const PictureSet pictures = ReadPictureSet(ExtractorOptions(options, workspace));
-  if (pictures.readable.size() == 1) {
-    throw Error(options.image_path,
-                "holds one picture that can be used, " + pictures.readable.front().name,
-                "depth takes two pictures at least that show the same place from different points: "
-                "add more, which overlap by half or more");
-  }
+  const PictureSet pictures = ReadPictures(options, workspace);
   const Stage begin = DatabaseStage(options, pictures.readable);
   JobProgress progress(PlanJob(SizeOf(options, pictures.readable), workspace.root,
                                options.check_disk, DoneBefore(begin, state)));
