@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "colmap_seapoint/base/error.h"
@@ -87,7 +88,7 @@ TEST(Legend, TinyPicturesAndOddScalesAreLeftAlone) {
   ColorImage tiny(3, 2, 3);
   DrawScaleBar(1, "m", &tiny);
   ColorImage picture(200, 100, 3);
-  for (const double scale : {0.0, -1.0, 1e300}) DrawScaleBar(scale, "m", &picture);
+  for (const double scale : {0.0, -1.0, std::nan(""), HUGE_VAL}) DrawScaleBar(scale, "m", &picture);
   for (const uint8_t value : picture.data) EXPECT_EQ(value, 0);
   DrawScaleBar(40, "m", &picture);  // 40 pixels: 1 m
   EXPECT_EQ(picture.At(30, 85, 0), 255);
