@@ -18,7 +18,7 @@ constexpr double kRegistrationGrowth = 2e-5;  // more for each picture of the mo
 constexpr double kRefinementSeconds = 0.05;
 constexpr double kStepsOfPicture = 3;  // of the densifier: once in the track, twice afterwards
 constexpr double kDensifiedMegapixels = 0.75;
-constexpr double kDensifiedMegapixelSeconds = 0.3;
+constexpr double kDensifiedMegapixelSeconds = 0.35;
 constexpr double kRectifiedMegapixelSeconds = 0.06;
 constexpr double kMapSeconds = 0.05;
 
