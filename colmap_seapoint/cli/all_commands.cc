@@ -7,6 +7,7 @@
 #include "colmap_seapoint/pipeline/match.h"
 #include "colmap_seapoint/pipeline/reconstruct.h"
 #include "colmap_seapoint/pipeline/scale.h"
+#include "colmap_seapoint/rendering/render_cloud.h"
 
 namespace colmap_seapoint {
 
@@ -30,6 +31,8 @@ std::vector<Command> AllCommands() {
                   RunPartialDensifier),
       MakeCommand("cloud_comparer", "two clouds in one frame -> accuracy, completeness, density",
                   RunCloudComparer),
+      MakeCommand("render_cloud", "a cloud -> a picture of it, from above or as a camera saw it",
+                  RunCloudRenderer),
       MakeCommand("automatic_reconstructor", "a folder of pictures -> dense clouds, all in one",
                   RunAutomaticReconstructor),
   };

@@ -141,7 +141,10 @@ SequenceReport Densify(const PartialDensifierOptions& options, const SparseModel
     }
   };
   callbacks.progress = [&](int64_t done, int64_t total) {
-    if (!progress) progress = std::make_unique<Progress>("Densification steps", total);
+    if (!progress) {
+      progress =
+          std::make_unique<Progress>("Making the cloud, steps", total, 0, Work::kDensification);
+    }
     progress->Update(done);
   };
   if (options.densification.write_debug) {

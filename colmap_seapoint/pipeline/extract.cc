@@ -129,7 +129,7 @@ void ExtractAll(const Extractor& extractor, int num_threads,
   }
   const auto count = static_cast<int64_t>(pictures.size());
   int64_t num_unchanged = 0;
-  Progress progress("SeaPoints of pictures", count);
+  Progress progress("SeaPoints of pictures", count, 0, Work::kPictures);
   OrderedPipeline<Extracted>(
       num_threads, count, 2 * num_threads,
       [&](int64_t i) {

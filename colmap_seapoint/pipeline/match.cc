@@ -37,6 +37,11 @@ RunReport Match(const std::string& command, const Options& options, const MatchI
   return report;
 }
 
+// Pairs that were matched with other options are matched again.
+std::string Asked(const SeaPointMatchingOptions& options) {
+  return std::string(kMatchingVersion) + ":" + OptionsFingerprint(OptionValues(options));
+}
+
 void BindDatabase(std::string* path, OptionTable* table) {
   table->AddRequired("database_path", path, "COLMAP database with SeaPoints");
   table->MarkOutput("database_path");
@@ -84,17 +89,18 @@ RunReport MatchSequentially(const SequentialMatcherOptions& options, ColmapDatab
     const auto sequential = SequentialPairs(images, choice.overlap);
     std::copy_if(sequential.begin(), sequential.end(), std::back_inserter(further),
                  [&](const ImagePair& pair) { return is_next.count(pair) == 0; });
-    MatchPairs(next, options.matching, 0, options.run.num_threads, database, report);
-    MatchPairs(further, DemandingOptions(options.matching), kMinOverlapShare,
-               options.run.num_threads, database, report);
+    MatchPairs(next, options.matching, Asked(options.matching), 0, options.run.num_threads,
+               database, report);
+    MatchPairs(further, DemandingOptions(options.matching), Asked(options.matching),
+               kMinOverlapShare, options.run.num_threads, database, report);
   };
   return Match("sequential_matcher", options, match_images, database);
 }
 
 RunReport MatchExhaustively(const ExhaustiveMatcherOptions& options, ColmapDatabase* database) {
   const auto match_images = [&](const std::vector<DatabaseImage>& images, RunReport* report) {
-    MatchPairs(ExhaustivePairs(images), options.matching, kMinOverlapShare, options.run.num_threads,
-               database, report);
+    MatchPairs(ExhaustivePairs(images), options.matching, Asked(options.matching), kMinOverlapShare,
+               options.run.num_threads, database, report);
   };
   return Match("exhaustive_matcher", options, match_images, database);
 }
@@ -104,8 +110,8 @@ RunReport MatchSpatially(const SpatialMatcherOptions& options, ColmapDatabase* d
     SortNaturally(&images);
     const auto placed = PlaceImages(images, options.pairs, options.image_path,
                                     options.database_path, *database, report);
-    MatchPairs(SpatialPairs(placed, options.pairs), options.matching, kMinOverlapShare,
-               options.run.num_threads, database, report);
+    MatchPairs(SpatialPairs(placed, options.pairs), options.matching, Asked(options.matching),
+               kMinOverlapShare, options.run.num_threads, database, report);
   };
   return Match("spatial_matcher", options, match_images, database);
 }

@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/cameras/camera_identity.h"
 #include "colmap_seapoint/cameras/exif_focal_length.h"
+#include "colmap_seapoint/estimate/preflight.h"
 #include "colmap_seapoint/georeference/marker_search.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/colmap/database_features.h"
@@ -20,6 +22,7 @@
 #include "colmap_seapoint/io/image/image_file.h"
 #include "colmap_seapoint/mapping/second_chance.h"
 #include "colmap_seapoint/pairing/tilted_pairs.h"
+#include "colmap_seapoint/pictures/duplicates.h"
 #include "colmap_seapoint/pictures/exif_positions.h"
 #include "colmap_seapoint/pipeline/densify_models.h"
 #include "colmap_seapoint/pipeline/extract.h"
@@ -64,6 +67,39 @@ Stage DatabaseStage(const Options& options, const std::vector<ReadablePicture>& 
             CameraKey(info.camera);
   }
   return {"database", kMatchingVersion, text, ""};
+}
+
+JobSize SizeOf(const Options& options, const std::vector<ReadablePicture>& pictures) {
+  const bool matches_all_pairs = MatchesAllPairs(options, pictures.size());
+  JobSize size;
+  size.num_pictures = static_cast<int64_t>(pictures.size());
+  for (const ReadablePicture& picture : pictures) {
+    size.megapixels += 1e-6 * picture.info.width * picture.info.height;
+  }
+  size.finds_look_alikes = !matches_all_pairs && options.pairs.loop_detection;
+  size.num_pairs = matches_all_pairs
+                       ? size.num_pictures * (size.num_pictures - 1) / 2
+                       : ExpectedSequentialPairs(size.num_pictures, options.pairs.overlap,
+                                                 size.finds_look_alikes);
+  size.step = options.densification.step;
+  size.writes_maps = options.densification.write_maps;
+  size.num_threads = EffectiveNumThreads(options.run.num_threads);
+  return size;
+}
+
+// Whether a stage is up to date is known when its turn comes; here that its record is there, beside
+// a database that is begun with the same pictures and options, is enough.
+OfWork<bool> DoneBefore(const Stage& database, const WorkspaceState& state) {
+  OfWork<bool> done;
+  const auto begun = state.Read(database.name);
+  if (!begun || begun->value("fingerprint", "") != StageFingerprint(database)) return done;
+  if (!state.Read("mapper")) return done;
+  for (const Work work :
+       {Work::kPictures, Work::kLookAlikes, Work::kPairs, Work::kRegistration, Work::kRefinement}) {
+    done[work] = true;
+  }
+  done[Work::kDensification] = done[Work::kMaps] = state.Read("dense_0").has_value();
+  return done;
 }
 
 // The stage that finds the untied pictures: all that decides which they are, but for what the
@@ -111,6 +147,20 @@ FeatureExtractorOptions ExtractorOptions(const Options& options, const Workspace
   extractor.extraction = options.extraction;
   extractor.run = options.run;
   return extractor;
+}
+
+// Each once. Throws Error when that leaves a single one.
+PictureSet ReadPictures(const Options& options, const Workspace& workspace) {
+  PictureSet pictures = ReadPictureSet(ExtractorOptions(options, workspace));
+  for (auto& twin :
+       LeaveOutDuplicates(workspace.images, options.run.num_threads, &pictures.readable)) {
+    pictures.left_out.push_back(std::move(twin));
+  }
+  if (pictures.readable.size() > 1) return pictures;
+  throw Error(options.image_path,
+              "holds one picture that can be used, " + pictures.readable.front().name,
+              "depth takes two pictures at least that show the same place from different points: "
+              "add more, which overlap by half or more");
 }
 
 RunReport MatchAll(const Options& options, const Workspace& workspace, size_t num_pictures,
@@ -305,9 +355,11 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& giv
 
   TakeInPictures({options.frames, options.run.num_threads}, &workspace, &state, &report);
   plan.job.image_path = workspace.images;
-  const PictureSet pictures = ReadPictureSet(ExtractorOptions(options, workspace));
+  const PictureSet pictures = ReadPictures(options, workspace);
   CheckScaleNames(options.scale, NamesOf(pictures));
   const Stage begin = DatabaseStage(options, pictures.readable);
+  JobProgress progress(PlanJob(SizeOf(options, pictures.readable), workspace.root,
+                               options.check_disk, DoneBefore(begin, state)));
   ColmapDatabase database =
       OpenWorkspaceDatabase(workspace.database, pictures.readable, options.reader, begin, &state);
   const Stage second_chance = SecondChanceStage(options, begin);
@@ -319,6 +371,7 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& giv
   std::vector<ModelSummary> models = ReadModels(mapping.models, &report);
   ScaleModels(options, pictures, workspace, mapping.fingerprint, &state, &models, &report);
   DensifyModels(options, workspace, mapping.fingerprint, &database, &state, &models, &report);
+  RememberJob(&progress);
   return WriteReport(workspace, models, report);
 }
 

@@ -37,6 +37,9 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
              "make one of two models where verified matches between them can be trusted; 0 where "
              "places look so alike that it joins what does not belong together",
              "ours");
+  table->Add("check_disk", &check_disk,
+             "end before any work where the disk is too small by far; 0 = go on all the same",
+             "ours");
   table->Add("rig", &rig, kRigHelp, "paper 4");
   table->Add("mask_path", &reader.mask_path, "the same as --ImageReader.mask_path", "COLMAP");
   scale.Bind(table);

@@ -45,9 +45,9 @@ set(exported_targets
   seapoint_feature_matching seapoint_feature_retrieval seapoint_feature_remeasuring seapoint_feature
   seapoint_densify_kernels seapoint_densify_match seapoint_densify_overlap seapoint_densify_cloud
   seapoint_densify_sequence seapoint_densify_maps seapoint_densify
-  seapoint_markers seapoint_georeference seapoint_navigation seapoint_compare seapoint_tracks
-  seapoint_adjustment seapoint_lens seapoint_reposing seapoint_remeasuring seapoint_mapping
-  seapoint_cameras seapoint_pictures seapoint_frames seapoint_joining seapoint_pairing
+  seapoint_estimate seapoint_markers seapoint_georeference seapoint_navigation seapoint_compare
+  seapoint_tracks seapoint_adjustment seapoint_lens seapoint_reposing seapoint_remeasuring
+  seapoint_mapping seapoint_cameras seapoint_pictures seapoint_frames seapoint_joining seapoint_pairing
   seapoint_report seapoint_pipeline)
 foreach(target IN LISTS exported_targets)
   string(REPLACE seapoint_ "" name ${target})

@@ -1,4 +1,4 @@
-#include "examples/camera_picture.h"
+#include "colmap_seapoint/rendering/camera_picture.h"
 
 #include <algorithm>
 #include <cmath>
