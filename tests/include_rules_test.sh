@@ -49,10 +49,11 @@ colmap_seapoint/frames          colmap_seapoint/base colmap_seapoint/io/files co
 colmap_seapoint/pairing         colmap_seapoint/base colmap_seapoint/io/* feature feature/*
 colmap_seapoint/remeasuring     colmap_seapoint/base feature/remeasuring
 colmap_seapoint/report          colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/compare colmap_seapoint/georeference densify densify/*
-colmap_seapoint/pipeline/intake colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/pictures colmap_seapoint/frames colmap_seapoint/pipeline
-colmap_seapoint/pipeline        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/compare colmap_seapoint/estimate colmap_seapoint/georeference colmap_seapoint/navigation colmap_seapoint/mapping colmap_seapoint/cameras colmap_seapoint/pictures colmap_seapoint/frames colmap_seapoint/pairing colmap_seapoint/report colmap_seapoint/pipeline/intake feature feature/* densify densify/*
-colmap_seapoint/pipeline/markers colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/pictures colmap_seapoint/report colmap_seapoint/pipeline
-colmap_seapoint/rendering       colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/pipeline
+colmap_seapoint/workspace       colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/pictures
+colmap_seapoint/pipeline/intake colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/pictures colmap_seapoint/frames colmap_seapoint/workspace
+colmap_seapoint/pipeline        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/compare colmap_seapoint/estimate colmap_seapoint/georeference colmap_seapoint/navigation colmap_seapoint/mapping colmap_seapoint/cameras colmap_seapoint/pictures colmap_seapoint/frames colmap_seapoint/pairing colmap_seapoint/report colmap_seapoint/workspace colmap_seapoint/pipeline/intake feature feature/* densify densify/*
+colmap_seapoint/pipeline/markers colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/pictures colmap_seapoint/report colmap_seapoint/workspace
+colmap_seapoint/rendering       colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/workspace
 colmap_seapoint/cli             colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files colmap_seapoint/pipeline colmap_seapoint/pipeline/markers colmap_seapoint/rendering
 colmap_seapoint                 colmap_seapoint/base colmap_seapoint/system colmap_seapoint/cli
 END

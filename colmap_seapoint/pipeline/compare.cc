@@ -12,10 +12,10 @@
 #include "colmap_seapoint/io/outputs/output_folder.h"
 #include "colmap_seapoint/io/outputs/replaceable_file.h"
 #include "colmap_seapoint/io/outputs/same_file.h"
-#include "colmap_seapoint/pipeline/earlier_outputs.h"
-#include "colmap_seapoint/pipeline/output_paths.h"
 #include "colmap_seapoint/report/comparison_report.h"
 #include "colmap_seapoint/report/difference_files.h"
+#include "colmap_seapoint/workspace/earlier_outputs.h"
+#include "colmap_seapoint/workspace/output_paths.h"
 
 namespace colmap_seapoint {
 namespace {

@@ -16,8 +16,8 @@
 #include "colmap_seapoint/io/image/picture_masks.h"
 #include "colmap_seapoint/io/outputs/run_lock.h"
 #include "colmap_seapoint/pairing/tilted_pairs.h"
-#include "colmap_seapoint/pipeline/output_paths.h"
 #include "colmap_seapoint/system/memory_budget.h"
+#include "colmap_seapoint/workspace/output_paths.h"
 #include "feature/extract_features.h"
 
 namespace colmap_seapoint {

@@ -13,7 +13,7 @@
 #include "colmap_seapoint/pairing/match_pairs.h"
 #include "colmap_seapoint/pairing/pair_lists.h"
 #include "colmap_seapoint/pairing/spatial_pairs.h"
-#include "colmap_seapoint/pipeline/output_paths.h"
+#include "colmap_seapoint/workspace/output_paths.h"
 #include "feature/matching/overlap_share.h"
 
 namespace colmap_seapoint {

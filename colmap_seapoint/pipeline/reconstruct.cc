@@ -30,8 +30,8 @@
 #include "colmap_seapoint/pipeline/map.h"
 #include "colmap_seapoint/pipeline/match.h"
 #include "colmap_seapoint/pipeline/scale_models.h"
-#include "colmap_seapoint/pipeline/workspace_database.h"
 #include "colmap_seapoint/report/reconstruction_summary.h"
+#include "colmap_seapoint/workspace/workspace_database.h"
 #include "feature/match_features.h"
 
 namespace colmap_seapoint {

@@ -5,7 +5,7 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/georeference/scale_measurements.h"
 #include "colmap_seapoint/pictures/read_rig.h"
-#include "colmap_seapoint/pipeline/output_paths.h"
+#include "colmap_seapoint/workspace/output_paths.h"
 
 namespace colmap_seapoint {
 

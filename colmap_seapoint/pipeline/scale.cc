@@ -18,9 +18,9 @@
 #include "colmap_seapoint/pictures/find_markers.h"
 #include "colmap_seapoint/pictures/image_reader.h"
 #include "colmap_seapoint/pictures/read_rig.h"
-#include "colmap_seapoint/pipeline/earlier_outputs.h"
-#include "colmap_seapoint/pipeline/output_paths.h"
 #include "colmap_seapoint/report/scale_report.h"
+#include "colmap_seapoint/workspace/earlier_outputs.h"
+#include "colmap_seapoint/workspace/output_paths.h"
 
 namespace colmap_seapoint {
 namespace {

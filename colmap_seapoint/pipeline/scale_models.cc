@@ -14,7 +14,7 @@
 #include "colmap_seapoint/io/files/run_report_json.h"
 #include "colmap_seapoint/markers/detect_markers.h"
 #include "colmap_seapoint/pictures/find_markers.h"
-#include "colmap_seapoint/pipeline/earlier_outputs.h"
+#include "colmap_seapoint/workspace/earlier_outputs.h"
 
 namespace colmap_seapoint {
 namespace {

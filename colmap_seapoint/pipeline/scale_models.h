@@ -8,9 +8,9 @@
 #include "colmap_seapoint/io/files/markers_csv.h"
 #include "colmap_seapoint/markers/marker_name.h"
 #include "colmap_seapoint/pipeline/scale.h"
-#include "colmap_seapoint/pipeline/stage_runner.h"
-#include "colmap_seapoint/pipeline/workspace.h"
 #include "colmap_seapoint/report/reconstruction_summary.h"
+#include "colmap_seapoint/workspace/stage_runner.h"
+#include "colmap_seapoint/workspace/workspace.h"
 
 namespace colmap_seapoint {
 

@@ -13,9 +13,9 @@
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/files/model_units.h"
 #include "colmap_seapoint/io/image/image_file.h"
-#include "colmap_seapoint/pipeline/output_paths.h"
 #include "colmap_seapoint/rendering/camera_picture.h"
 #include "colmap_seapoint/rendering/legend.h"
+#include "colmap_seapoint/workspace/output_paths.h"
 
 namespace colmap_seapoint {
 namespace {

@@ -48,7 +48,7 @@ set(exported_targets
   seapoint_estimate seapoint_markers seapoint_georeference seapoint_navigation seapoint_compare
   seapoint_tracks seapoint_adjustment seapoint_lens seapoint_reposing seapoint_remeasuring
   seapoint_mapping seapoint_cameras seapoint_pictures seapoint_frames seapoint_joining seapoint_pairing
-  seapoint_report seapoint_pipeline)
+  seapoint_workspace seapoint_intake seapoint_report seapoint_pipeline)
 foreach(target IN LISTS exported_targets)
   string(REPLACE seapoint_ "" name ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})

@@ -10,7 +10,7 @@
 #include "colmap_seapoint/io/outputs/run_lock.h"
 #include "colmap_seapoint/pictures/find_markers.h"
 #include "colmap_seapoint/pictures/image_reader.h"
-#include "colmap_seapoint/pipeline/output_paths.h"
+#include "colmap_seapoint/workspace/output_paths.h"
 
 namespace colmap_seapoint {
 namespace {

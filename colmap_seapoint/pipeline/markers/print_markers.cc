@@ -6,8 +6,8 @@
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/outputs/replaceable_file.h"
 #include "colmap_seapoint/io/outputs/run_lock.h"
-#include "colmap_seapoint/pipeline/output_paths.h"
 #include "colmap_seapoint/report/marker_sheet.h"
+#include "colmap_seapoint/workspace/output_paths.h"
 
 namespace colmap_seapoint {
 namespace {

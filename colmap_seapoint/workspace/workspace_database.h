@@ -8,7 +8,7 @@
 
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/pictures/image_reader.h"
-#include "colmap_seapoint/pipeline/stage_runner.h"
+#include "colmap_seapoint/workspace/stage_runner.h"
 
 namespace colmap_seapoint {
 

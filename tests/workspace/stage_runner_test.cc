@@ -1,4 +1,4 @@
-#include "colmap_seapoint/pipeline/stage_runner.h"
+#include "colmap_seapoint/workspace/stage_runner.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -1,4 +1,4 @@
-#include "colmap_seapoint/pipeline/workspace_database.h"
+#include "colmap_seapoint/workspace/workspace_database.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "colmap_seapoint/pipeline/stage_runner.h"
+#include "colmap_seapoint/workspace/stage_runner.h"
 
 #include <unistd.h>
 
@@ -10,7 +10,7 @@
 #include "colmap_seapoint/io/files/content_hash.h"
 #include "colmap_seapoint/io/files/input_stream.h"
 #include "colmap_seapoint/io/outputs/file_record.h"
-#include "colmap_seapoint/pipeline/earlier_outputs.h"
+#include "colmap_seapoint/workspace/earlier_outputs.h"
 
 namespace colmap_seapoint {
 namespace {

@@ -1,4 +1,4 @@
-#include "colmap_seapoint/pipeline/earlier_outputs.h"
+#include "colmap_seapoint/workspace/earlier_outputs.h"
 
 #include <algorithm>
 #include <boost/algorithm/string/predicate.hpp>
@@ -13,7 +13,7 @@
 #include "colmap_seapoint/io/colmap/dense_workspace.h"
 #include "colmap_seapoint/io/files/input_stream.h"
 #include "colmap_seapoint/io/image/image_file.h"
-#include "colmap_seapoint/pipeline/output_paths.h"
+#include "colmap_seapoint/workspace/output_paths.h"
 
 namespace colmap_seapoint {
 namespace {

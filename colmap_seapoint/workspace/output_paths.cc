@@ -1,4 +1,4 @@
-#include "colmap_seapoint/pipeline/output_paths.h"
+#include "colmap_seapoint/workspace/output_paths.h"
 
 #include <string>
 #include <variant>
