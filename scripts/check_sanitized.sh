@@ -29,6 +29,7 @@ case $preset in
 esac
 # Without halt_on_error what is undefined is printed, and the test passes.
 export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
+export LSAN_OPTIONS="suppressions=$PWD/tests/library_leaks.supp print_suppressions=0"
 export TSAN_OPTIONS="halt_on_error=1 suppressions=$PWD/tests/uninstrumented_libraries.supp"
 
 cmake --preset "$preset" >/dev/null

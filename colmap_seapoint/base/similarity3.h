@@ -15,6 +15,14 @@ struct Similarity3d {
   Eigen::Vector3d operator*(const Eigen::Vector3d& x) const {
     return scale * (rotation * x) + translation;
   }
+
+  Similarity3d Inverse() const {
+    Similarity3d inverse;
+    inverse.scale = 1 / scale;
+    inverse.rotation = rotation.conjugate();
+    inverse.translation = -inverse.scale * (inverse.rotation * translation);
+    return inverse;
+  }
 };
 
 // The same camera (or rig) in the new world, whose unit is also that of the new camera frame.

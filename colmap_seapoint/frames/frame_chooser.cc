@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
-#include <vector>
+
+#include "colmap_seapoint/base/median.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -154,10 +155,7 @@ void FrameChooser::PlanNextLook(const Look& look) {
 
 bool FrameChooser::IsBlurred(double sharpness) const {
   if (sharpness_.size() < kMinNumSharpness) return false;
-  std::vector<double> sorted(sharpness_.begin(), sharpness_.end());
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  return sharpness < kBlurred * *middle;
+  return sharpness < kBlurred * UpperMedian({sharpness_.begin(), sharpness_.end()});
 }
 
 void FrameChooser::Finish() {

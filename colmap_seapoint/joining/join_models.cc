@@ -71,9 +71,7 @@ BundleAdjustmentOptions AdjustmentOf(const JoinOptions& options, const SparseMod
   // The links must show their errors, not be passed over.
   adjustment.last_loss.reset();
   adjustment.num_threads = options.num_threads;
-  if (!options.refine_lens) {
-    for (const auto& [id, camera] : model.cameras) adjustment.lenses[id].held_params = ~0u;
-  }
+  if (!options.refine_lens) adjustment.lenses = AllLensesHeld(model);
   return adjustment;
 }
 

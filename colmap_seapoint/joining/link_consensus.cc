@@ -55,7 +55,7 @@ std::optional<Similarity3d> Fit(const Problem& problem, const Indices& chosen) {
 }
 
 Indices Agreeing(const Problem& problem, const Indices& candidates, const Similarity3d& b_from_a) {
-  const Similarity3d a_from_b = Inverse(b_from_a);
+  const Similarity3d a_from_b = b_from_a.Inverse();
   Indices agreeing;
   for (const size_t i : candidates) {
     const ModelLink& link = problem.links[i];
@@ -117,14 +117,6 @@ Agreement Search(const Problem& problem, const Indices& candidates) {
 double MaxLinkError(const Camera& camera) {
   return std::max(kMinMaxError,
                   kMaxErrorShare * static_cast<double>(std::max(camera.width, camera.height)));
-}
-
-Similarity3d Inverse(const Similarity3d& b_from_a) {
-  Similarity3d inverse;
-  inverse.scale = 1 / b_from_a.scale;
-  inverse.rotation = b_from_a.rotation.conjugate();
-  inverse.translation = -inverse.scale * (inverse.rotation * b_from_a.translation);
-  return inverse;
 }
 
 std::optional<LinkConsensus> FindLinkConsensus(const SparseModel& a, const SparseModel& b,

@@ -27,7 +27,4 @@ double MaxLinkError(const Camera& camera);
 std::optional<LinkConsensus> FindLinkConsensus(const SparseModel& a, const SparseModel& b,
                                                const std::vector<ModelLink>& links);
 
-// x_a of x_b.
-Similarity3d Inverse(const Similarity3d& b_from_a);
-
 }  // namespace colmap_seapoint

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "colmap_seapoint/adjustment/bundle_adjustment.h"
+#include "colmap_seapoint/lens/compact_part.h"
 #include "colmap_seapoint/lens/ground_bend.h"
 #include "colmap_seapoint/lens/held_out_tracks.h"
 
@@ -22,6 +23,7 @@ constexpr int kMaxIterations = 15, kMaxFirstIterations = 8;
 // Observations of an adjustment, so that the choice costs seconds at most; small models are judged
 // by more of their tracks, since one in 20 would be a handful.
 constexpr size_t kFittedObservations = 12000, kHeldOutObservations = 12000;
+constexpr size_t kMaxPictures = 60;  // compact_part.h
 constexpr size_t kManyTracks = 20000;
 constexpr size_t kEveryOfFew = 4, kEveryOfMany = 20;
 
@@ -136,7 +138,7 @@ Judging Prepare(const LensChoiceOptions& options, const SparseModel& model) {
   split.held_out_every = model.points3D.size() < kManyTracks ? kEveryOfFew : kEveryOfMany;
   split.max_fitted_observations = kFittedObservations;
   split.max_held_out_observations = kHeldOutObservations;
-  Judging judging = {options, Split(split, model)};
+  Judging judging = {options, Split(split, CompactPart(model, kMaxPictures))};
   LensForm as_it_is;
   as_it_is.principal_point = options.principal_point;
   const SparseModel& start = judging.tracks.fitted;

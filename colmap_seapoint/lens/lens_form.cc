@@ -38,10 +38,12 @@ struct Sighting {
 
 std::vector<Sighting> RasterOf(const Camera& camera) {
   std::vector<Sighting> raster;
-  for (int k = 0; k < kRaster * kRaster; ++k) {
-    const Eigen::Vector2d pixel(camera.width * (k % kRaster + 0.5) / kRaster,
-                                camera.height * (k / kRaster + 0.5) / kRaster);
-    if (const auto ray = camera.CamFromImg(pixel)) raster.push_back({pixel, ray->homogeneous()});
+  for (int row = 0; row < kRaster; ++row) {
+    for (int column = 0; column < kRaster; ++column) {
+      const Eigen::Vector2d pixel(camera.width * (column + 0.5) / kRaster,
+                                  camera.height * (row + 0.5) / kRaster);
+      if (const auto ray = camera.CamFromImg(pixel)) raster.push_back({pixel, ray->homogeneous()});
+    }
   }
   return raster;
 }

@@ -90,12 +90,26 @@ ColmapDatabase OpenedToRead(const fs::path& path) {
   return ColmapDatabase(path, ColmapDatabase::Mode::kReadOnly, ColmapDatabase::Check::kNone);
 }
 
-// The pictures that stand wrong are brought to where they belong, in the folder too.
-void BringBack(const fs::path& database_path, const fs::path& folder, SparseModel* model) {
+// Brings the pictures that stand wrong to where they belong, in the folder too. False: none does.
+bool BringBack(const fs::path& database_path, const fs::path& folder, SparseModel* model) {
   const std::vector<std::string> moved = ReposePictures(OpenedToRead(database_path), model);
-  if (moved.empty()) return;
+  if (moved.empty()) return false;
   for (const std::string& name : moved) LogInfo(name + " stood wrong and is posed again");
   *model = WrittenAndRead(folder, std::move(*model));
+  return true;
+}
+
+// The points anew, in the folder too; and once more where they show that pictures stand wrong.
+Triangulation TriangulateAnew(const ColmapProgram& colmap, const AdjustmentJob& job,
+                              const fs::path& folder, SparseModel* model) {
+  const TriangulationJob triangulation_job = {job.database_path, job.image_path, job.options,
+                                              job.log_path, job.must_succeed};
+  for (int pass = 1;; ++pass) {
+    Triangulation triangulation = Retriangulate(colmap, triangulation_job, folder, *model);
+    if (!triangulation.model) return triangulation;
+    *model = WrittenAndRead(folder, *std::move(triangulation.model));
+    if (pass == 2 || !BringBack(job.database_path, folder, model)) return triangulation;
+  }
 }
 
 // Of the lens and of the ground's bend.
@@ -181,16 +195,12 @@ LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
   const bool is_sound = first.fault.empty();
   result.distortion_is_sound = is_sound || !job.frees_distortion;
   if (is_sound) result.model = WrittenAndRead(folder, std::move(first.adjustment.model));
-  BringBack(job.database_path, folder, &result.model);
 
-  const TriangulationJob triangulation_job = {job.database_path, job.image_path, job.options,
-                                              job.log_path, job.must_succeed};
-  Triangulation triangulation = Retriangulate(colmap, triangulation_job, folder, result.model);
+  const Triangulation triangulation = TriangulateAnew(colmap, job, folder, &result.model);
   if (triangulation.has_failed) {
     result.is_usable = false;
     return result;
   }
-  if (triangulation.model) result.model = WrittenAndRead(folder, *std::move(triangulation.model));
 
   std::string last;
   if (is_sound) last = MeasureAndAdjust(job, limits, folder, &result.model);

@@ -45,16 +45,17 @@ struct LensAdjustment {
 // empty where there is no such database.
 std::map<uint32_t, double> PriorFocals(const std::filesystem::path& database_path);
 
-// Adjusts the model in `folder` with all of the lens free (sound_adjustment.h), brings back
-// pictures that stand wrong (reposing/repose_pictures.h), triangulates it anew (retriangulate.h),
-// measures its observations again in the pictures (remeasuring/remeasure_observations.h), chooses
-// the form of the lens that they prove (lens/choose_lens.h) and adjusts it once more with that;
-// what is taken is written back at each step. An adjustment is taken when it is sound: focal
-// lengths within a factor of two of what they were, the second time of 1.2. When the first one is
-// not, the model keeps its lens. To hold the principal point and try again would hide that the
-// model is wrong: on the amphora wreck, where the mapper's trial with a held distortion had fallen
-// into a lens of 122 px, it gave 183 px instead of 1090. Throws Error when the model cannot be read
-// or written. The same model for any number of threads.
+// Adjusts the model in `folder` with all of the lens free (sound_adjustment.h), triangulates
+// it anew (retriangulate.h), brings back pictures that then stand wrong
+// (reposing/repose_pictures.h), measures its observations again in the pictures
+// (remeasuring/remeasure_observations.h), chooses the form of the lens that they prove
+// (lens/choose_lens.h) and adjusts it once more with that; what is taken is written back at each
+// step. An adjustment is taken when it is sound: focal lengths within a factor of two of what they
+// were, the second time of 1.2. When the first one is not, the model keeps its lens. To hold the
+// principal point and try again would hide that the model is wrong: on the amphora wreck, where the
+// mapper's trial with a held distortion had fallen into a lens of 122 px, it gave 183 px instead of
+// 1090. Throws Error when the model cannot be read or written. The same model for any number of
+// threads.
 LensAdjustment AdjustLens(const ColmapProgram& colmap, const AdjustmentJob& job,
                           const std::filesystem::path& folder);
 

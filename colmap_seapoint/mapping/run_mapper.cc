@@ -129,6 +129,7 @@ class MapperRounds {
     trial.triangulation_path = job_.database_path;
     trial.options = job_.later_rounds;
     trial.holds_distortion = true;
+    trial.must_succeed = true;  // or a full disk would leave another model than the next run
     const LensAdjustment lens =
         AdjustLens(colmap_, JobOf(trial, "lens_joined_" + folder.filename().string()), folder);
     LogInfo("Lens of the joined model: " + lens.outcome);

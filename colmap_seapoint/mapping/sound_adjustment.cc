@@ -41,12 +41,6 @@ std::string Fault(const SparseModel& before, const SparseModel& after, double ma
   return "";
 }
 
-std::map<uint32_t, LensFreedom> AllHeld(const SparseModel& model) {
-  std::map<uint32_t, LensFreedom> lenses;
-  for (const auto& [id, camera] : model.cameras) lenses[id].held_params = ~0u;
-  return lenses;
-}
-
 }  // namespace
 
 LensForm FirstForm(bool frees_principal_point) {
@@ -59,7 +53,7 @@ SoundAdjustment AdjustSoundly(const SparseModel& before, const LensLimits& limit
   if (before.images.size() < kMinPictures)
     return {{}, "it takes three pictures at least to tell the lens"};
   BundleAdjustmentOptions options;
-  options.lenses = limits.holds_lens ? AllHeld(before)
+  options.lenses = limits.holds_lens ? AllLensesHeld(before)
                                      : FreedomOfLenses(limits.form, before, limits.prior_focals);
   options.num_threads = limits.num_threads;
   if (!limits.rejects_outliers) options.last_loss.reset();

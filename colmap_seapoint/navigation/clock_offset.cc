@@ -121,8 +121,9 @@ double NumIndependent(const std::vector<TimedCenter>& track, const std::vector<L
   const auto [first, last] =
       std::minmax_element(track.begin(), track.end(),
                           [](const auto& a, const auto& b) { return a.seconds < b.seconds; });
+  const double begin = first->seconds + offset, end = last->seconds + offset;
   const auto num_fixes = std::count_if(log.begin(), log.end(), [&](const LogFix& fix) {
-    return fix.seconds >= first->seconds + offset && fix.seconds <= last->seconds + offset;
+    return fix.seconds >= begin && fix.seconds <= end;
   });
   const double count =
       std::min<double>(static_cast<double>(num_fixes), static_cast<double>(track.size()));

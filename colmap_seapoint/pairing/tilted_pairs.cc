@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "colmap_seapoint/base/camera.h"
-#include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/io/colmap/database_features.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
@@ -44,13 +43,9 @@ Pictures ViewsOf(const TiltedPairsJob& job, const ColmapDatabase& database) {
   }
   ParallelFor(job.num_threads, static_cast<int64_t>(pictures.size()), [&](int64_t i) {
     Picture& picture = pictures[static_cast<size_t>(i)].second;
-    try {
-      const MaskedPicture read = job.read(picture.name);
-      picture.view =
-          ExtractTiltedView(read.picture, read.mask, picture.camera, job.tilt_deg, job.extraction);
-    } catch (const Error&) {
-      // The extraction has named it already.
-    }
+    const MaskedPicture read = job.read(picture.name);
+    picture.view =
+        ExtractTiltedView(read.picture, read.mask, picture.camera, job.tilt_deg, job.extraction);
   });
   return Pictures(pictures.begin(), pictures.end());
 }

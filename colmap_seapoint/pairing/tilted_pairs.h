@@ -39,9 +39,10 @@ struct TiltedPairsJob {
 // matched with those of their own group, so that what ties them is triangulated. Only adds: the
 // SeaPoints that are matched so stand behind the pictures' own, and their matches behind the pairs'
 // own, which are verified again as a whole; a pair that would lose by that stays as it is. Returns
-// the number of pairs that were tied. The caller holds the transaction. Pictures that cannot be
-// read are passed over. The same rows for any number of threads. Cost: 0.1 CPU s a picture, 0.02 a
-// pair; memory: 0.5 MB a picture.
+// the number of pairs that were tied. The caller holds the transaction. What `read` throws is
+// thrown on: these pictures were read before, and a disk that fails must not lead to other ties.
+// The same rows for any number of threads. Cost: 0.1 CPU s a picture, 0.02 a pair; memory: 0.5 MB a
+// picture.
 int64_t TieByTiltedViews(const TiltedPairsJob& job, ColmapDatabase* database);
 
 }  // namespace colmap_seapoint

@@ -20,6 +20,7 @@
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/content_hash.h"
 #include "colmap_seapoint/io/image/image_file.h"
+#include "colmap_seapoint/io/image/picture_masks.h"
 #include "colmap_seapoint/mapping/second_chance.h"
 #include "colmap_seapoint/pairing/tilted_pairs.h"
 #include "colmap_seapoint/pictures/duplicates.h"
@@ -261,12 +262,10 @@ void ScaleModels(const Options& options, const PictureSet& pictures, const Works
   }
 }
 
-MaskedPicture ReadMasked(const fs::path& folder, const std::string& mask_folder,
+MaskedPicture ReadMasked(const fs::path& folder, const PictureMasks& masks,
                          const std::string& name) {
   MaskedPicture read = {ReadGrayImage(folder / name), {}};
-  const fs::path mask = fs::path(mask_folder) / (name + ".png");
-  std::error_code ignored;
-  if (!mask_folder.empty() && fs::exists(mask, ignored)) read.mask = ReadGrayImage(mask);
+  read.mask = masks.Decode(name, masks.Open(name), read.picture.width, read.picture.height);
   return read;
 }
 
@@ -321,8 +320,8 @@ void TieTheRest(const Options& options, const Workspace& workspace, const Stage&
     if (ids.empty() || IsTiedAlready(*database, ids)) return {0, {}};
     StageTimer timer(report, stage.name);
     TiltedPairsJob job;
-    job.read = [&](const std::string& name) {
-      return ReadMasked(workspace.images, options.reader.mask_path, name);
+    job.read = [&, masks = PictureMasks(options.reader.mask_path)](const std::string& name) {
+      return ReadMasked(workspace.images, masks, name);
     };
     job.extraction = options.extraction;
     job.matching = options.matching;

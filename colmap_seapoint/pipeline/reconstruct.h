@@ -8,6 +8,6 @@
 namespace colmap_seapoint {
 
 // Throws UsageError and Error; what a stage has finished by then is kept.
-CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& options);
+CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& given);
 
 }  // namespace colmap_seapoint

@@ -98,7 +98,7 @@ TEST(LinkConsensusTest, TooFewLinksAgreeOnNothing) {
 }
 
 TEST(LinkConsensusTest, AnInverseTakesBack) {
-  const Similarity3d frame = OtherFrame(), back = Inverse(frame);
+  const Similarity3d frame = OtherFrame(), back = frame.Inverse();
   const Eigen::Vector3d x(0.4, -2, 5);
   EXPECT_LT((back * (frame * x) - x).norm(), 1e-12);
 }

@@ -91,7 +91,7 @@ TEST_F(AdjustLensTest, TriangulatesWithTheAdjustedLens) {
   EXPECT_LT(LargestDifference(adjustment.model.cameras.at(1), ExactLens()), 1e-5);
 }
 
-TEST_F(AdjustLensTest, APictureThatStandsWrongIsBroughtBackBeforeTheTriangulation) {
+TEST_F(AdjustLensTest, APictureThatStandsWrongIsBroughtBack) {
   SparseModel start = Disturbed(exact_);
   // The triangulator of these tests leaves all as it is: so do the points.
   start.images[4].cam_from_world.translation += Eigen::Vector3d(0.3, 0.5, 0);

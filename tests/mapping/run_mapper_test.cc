@@ -315,6 +315,17 @@ TEST_F(RunMapperTest, PicturesThatStandWrongAreBroughtBackAndCount) {
   EXPECT_EQ(NamesIn("0").size(), 10u);
 }
 
+TEST_F(RunMapperTest, ATriangulationThatFailsOnAJoinedModelIsAnError) {
+  fs::remove(job_.database_path);
+  WriteSurveyDatabase(survey_, job_.database_path);
+  job_.lens = LensRule::kFind;
+  colmap_.Leaves(kMapper, 1, "0", Part(1, 5));
+  colmap_.Leaves(kMapper, 1, "1", Part(6, 10));
+  colmap_.Ends("point_triangulator", 3, "No space left on device", 1);
+  const std::string text = ErrorOf([&] { Run(); });
+  EXPECT_NE(text.find("lens_joined_0_triangulation.log"), std::string::npos) << text;
+}
+
 TEST_F(RunMapperTest, OfTrialsWithAsManyPicturesTheSmallerErrorCounts) {
   job_.lens = LensRule::kFind;
   SparseModel noisy = Part(1, 9);

@@ -155,6 +155,12 @@ void ListShares(Bundle* bundle) {
 
 }  // namespace
 
+std::map<uint32_t, LensFreedom> AllLensesHeld(const SparseModel& model) {
+  std::map<uint32_t, LensFreedom> lenses;
+  for (const auto& [id, camera] : model.cameras) lenses[id].held_params = ~0u;
+  return lenses;
+}
+
 Bundle MakeBundle(const SparseModel& model, const std::map<uint32_t, LensFreedom>& freedom) {
   const std::vector<uint64_t> ids = IdsOf(model);
   const std::vector<Candidate> observations = SortByPoint(FindCandidates(model, ids));

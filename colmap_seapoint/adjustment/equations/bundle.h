@@ -25,6 +25,9 @@ struct LensFreedom {
   bool Holds(size_t param) const { return (held_params >> param & 1) != 0; }
 };
 
+// All of all lenses, by camera id.
+std::map<uint32_t, LensFreedom> AllLensesHeld(const SparseModel& model);
+
 struct BundleLens {
   CameraModel model = CameraModel::kSimplePinhole;
   std::array<int, kMaxLensParams> slots{};  // which free value a parameter is; -1: none, it stays

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <exiv2/exiv2.hpp>
 #include <locale>
-#include <mutex>
 #include <new>
 #include <sstream>
 
@@ -156,16 +155,19 @@ std::optional<Metadata> TryToRead(const std::filesystem::path& path) {
 
 }  // namespace
 
-ExifInfo ReadExif(const std::filesystem::path& path) {
-  // Exiv2's XMP parser and its caches are shared by the process.
+std::unique_lock<std::mutex> HoldExiv2() {
   static std::mutex mutex;
-  const std::lock_guard<std::mutex> lock(mutex);
+  std::unique_lock<std::mutex> lock(mutex);
   static const bool is_set_up = [] {
     Exiv2::LogMsg::setLevel(Exiv2::LogMsg::mute);
     return Exiv2::XmpParser::initialize();
   }();
   static_cast<void>(is_set_up);
+  return lock;
+}
 
+ExifInfo ReadExif(const std::filesystem::path& path) {
+  const auto held = HoldExiv2();
   auto metadata = TryToRead(path);
   if (!metadata) {
     // A disk that fails looks to Exiv2 like damaged EXIF: it is read here, where both are told

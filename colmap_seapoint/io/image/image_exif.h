@@ -1,7 +1,8 @@
-// Reads what EXIF tells about the camera and its place. For image_file.cc only.
+// Reads what EXIF tells about the camera and its place. For image_file.cc and jpeg_exif.cc only.
 #pragma once
 
 #include <filesystem>
+#include <mutex>
 #include <optional>
 
 #include "colmap_seapoint/base/geodesy.h"
@@ -18,6 +19,10 @@ struct ExifInfo {
   CaptureHeights heights;
   std::string taken;
 };
+
+// Exiv2, set up and silent, for as long as this is held: its XMP parser and its caches are shared
+// by the process.
+std::unique_lock<std::mutex> HoldExiv2();
 
 // Pictures without EXIF, or with EXIF that cannot be read, give the defaults. Never prints; may be
 // called from several threads.

@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <ctime>
 #include <exiv2/exiv2.hpp>
-#include <mutex>
 #include <new>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -11,6 +10,7 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/image/image_exif.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -46,13 +46,11 @@ ExifBlock Clean(const Exiv2::ExifData& exif) {
   return Encode(kept);
 }
 
-void MuteExiv2() { Exiv2::LogMsg::setLevel(Exiv2::LogMsg::mute); }
-
 }  // namespace
 
 ExifBlock MakeExif(std::optional<int64_t> time_us, const std::string& maker,
                    const std::string& model) {
-  MuteExiv2();
+  const auto held = HoldExiv2();
   Exiv2::ExifData exif;
   if (!maker.empty()) exif["Exif.Image.Make"] = maker;
   if (!model.empty()) exif["Exif.Image.Model"] = model;
@@ -70,7 +68,7 @@ ExifBlock MakeExif(std::optional<int64_t> time_us, const std::string& maker,
 }
 
 ExifBlock CleanExif(const ExifBlock& block) {
-  MuteExiv2();
+  const auto held = HoldExiv2();
   try {
     Exiv2::ExifData exif;
     Exiv2::ExifParser::decode(exif, block.data(), static_cast<uint32_t>(block.size()));
@@ -83,10 +81,7 @@ ExifBlock CleanExif(const ExifBlock& block) {
 }
 
 ExifBlock CleanExifOf(const std::filesystem::path& path) {
-  // Exiv2's XMP parser and its caches are shared by the process.
-  static std::mutex mutex;
-  const std::lock_guard<std::mutex> lock(mutex);
-  MuteExiv2();
+  const auto held = HoldExiv2();
   try {
     const auto image = Exiv2::ImageFactory::open(path.string());
     image->readMetadata();

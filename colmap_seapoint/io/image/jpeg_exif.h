@@ -22,7 +22,7 @@ ExifBlock MakeExif(std::optional<int64_t> time_us, const std::string& maker,
 // What a picture's block, or its file (any format that Exiv2 reads, RAW among them), tells of the
 // camera, the time and the place, without previews and makers' notes. Empty for what cannot be
 // read.
-ExifBlock CleanExif(const ExifBlock& exif);
+ExifBlock CleanExif(const ExifBlock& block);
 ExifBlock CleanExifOf(const std::filesystem::path& path);
 
 // A JPEG of quality 95 with this EXIF; atomic.
