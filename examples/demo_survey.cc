@@ -1,5 +1,6 @@
 // demo_survey generate: pictures of a made-up seabed with their exact truth.
 // demo_survey control: a scale bar and noisy positions for such a survey.
+// demo_survey markers: which of its coded markers were found, and how exactly.
 // demo_survey score: a COLMAP model and its dense cloud against that truth.
 #include <boost/program_options.hpp>
 #include <cstdio>
@@ -13,10 +14,12 @@
 #include "colmap_seapoint/io/cloud/ply.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/files/markers_csv.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "examples/subcommands.h"
 #include "examples/survey/control.h"
 #include "examples/survey/score.h"
+#include "examples/survey/score_markers.h"
 #include "examples/survey/survey.h"
 #include "examples/survey/view_gsd.h"
 
@@ -28,6 +31,7 @@ namespace po = boost::program_options;
 constexpr char kUsage[] =
     "demo_survey generate --output_path DIR [options]\n"
     "demo_survey control --survey_path DIR --output_path DIR [options]\n"
+    "demo_survey markers --survey_path DIR --markers_path found_markers.csv\n"
     "demo_survey score --survey_path DIR --input_path MODEL --cloud_path fused.ply [options]\n"
     "demo_survey <command> -h lists the options.\n";
 
@@ -81,6 +85,15 @@ void AddPortOptions(po::options_description* description, PortOptions* port, std
   add("port_sideways", Default(&port->sideways), "dome: its centre aside of the axis, metres");
 }
 
+void AddMarkerOptions(po::options_description* description, SurveyOptions* o) {
+  auto add = description->add_options();
+  add("markers", Default(&o->markers),
+      "scale bars of two coded markers on the seabed (tag36h11, bar k has 2 k and 2 k + 1); their "
+      "lengths: truth/bars.csv");
+  add("marker_size", Default(&o->marker_size), "side of the markers' black squares, metres");
+  add("marker_bar", Default(&o->marker_bar), "length of a bar on the map, metres");
+}
+
 int Generate(const std::vector<std::string>& arguments) {
   SurveyOptions o;
   std::string output_path, path = SurveyPathName(o.path), camera_model = "OPENCV", port = "none";
@@ -95,6 +108,7 @@ int Generate(const std::vector<std::string>& arguments) {
   AddPictureOptions(&description, &o);
   AddWaterOptions(&description, &o);
   AddPortOptions(&description, &o.port, &port);
+  AddMarkerOptions(&description, &o);
   add("num_threads", Default(&o.num_threads), "-1 = all");
   if (!ParseOptions(description, arguments)) return 0;
   o.path = ParseSurveyPath(path);
@@ -151,6 +165,20 @@ int Control(const std::vector<std::string>& arguments) {
   return 0;
 }
 
+int Markers(const std::vector<std::string>& arguments) {
+  std::string survey_path, markers_path;
+  po::options_description description("demo_survey markers");
+  auto add = description.add_options();
+  add("help,h", "this text");
+  add("survey_path", po::value(&survey_path)->required(),
+      "folder of demo_survey generate --markers");
+  add("markers_path", po::value(&markers_path)->required(), "table of marker_finder");
+  if (!ParseOptions(description, arguments)) return 0;
+  std::cout << MarkerScoreText(
+      ScoreMarkers(ReadSurveyTruth(survey_path), ReadMarkersCsv(markers_path)));
+  return 0;
+}
+
 int Score(const std::vector<std::string>& arguments) {
   ScoreOptions o;
   std::string survey_path, input_path, cloud_path, output_path;
@@ -183,6 +211,7 @@ int Score(const std::vector<std::string>& arguments) {
 
 int main(int argc, char** argv) {
   using namespace colmap_seapoint;
-  return RunSubcommands(argc, argv, "demo_survey", kUsage,
-                        {{"generate", Generate}, {"control", Control}, {"score", Score}});
+  return RunSubcommands(
+      argc, argv, "demo_survey", kUsage,
+      {{"generate", Generate}, {"control", Control}, {"markers", Markers}, {"score", Score}});
 }

@@ -20,7 +20,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 results=${SEAPOINT_DEMO_DIR:-$PWD/demo_workspace}
 scripts/setup.sh
 cmake --preset release >/dev/null
-cmake --build --preset release --target colmap_seapoint demo_survey render_cloud
+cmake --build --preset release --target colmap_seapoint demo_survey
 bin=$PWD/build/release/bin
 
 survey=
@@ -47,7 +47,9 @@ if [ "$status" -ne 0 ] && [ "$status" -ne 3 ]; then exit "$status"; fi
 
 for dense in "$workspace"/dense/*/; do
   [ -f "$dense/fused.ply" ] || continue
-  "$bin/render_cloud" "$dense/fused.ply" "$dense/fused.png"
+  rm -f "$dense/fused.png"
+  "$bin/colmap_seapoint" render_cloud --input_path "$dense/fused.ply" \
+    --output_path "$dense/fused.png" --model_path "$workspace/sparse/$(basename "$dense")"
   if [ -n "$survey" ]; then
     echo
     echo "Score against the survey's exact truth:"

@@ -14,6 +14,7 @@ colmap_seapoint/io/navigation   colmap_seapoint/base colmap_seapoint/io/files
 colmap_seapoint/io/outputs      colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files
 colmap_seapoint/io/image        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files
 colmap_seapoint/io/video        colmap_seapoint/base colmap_seapoint/io/files
+colmap_seapoint/io/pdf          colmap_seapoint/base colmap_seapoint/io/files
 colmap_seapoint/io/cloud        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files
 colmap_seapoint/io/colmap       colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files colmap_seapoint/io/image
 feature/kernels                 colmap_seapoint/base
@@ -30,7 +31,9 @@ densify/cloud                   colmap_seapoint/base densify/match densify/overl
 densify/sequence                colmap_seapoint/base densify/match densify/overlap densify/cloud
 densify/maps                    colmap_seapoint/base densify/match densify/cloud
 densify                         colmap_seapoint/base densify/*
-colmap_seapoint/georeference    colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/navigation
+colmap_seapoint/estimate        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files
+colmap_seapoint/markers         colmap_seapoint/base
+colmap_seapoint/georeference    colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/navigation colmap_seapoint/markers
 colmap_seapoint/navigation      colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/navigation colmap_seapoint/georeference colmap_seapoint/pictures
 colmap_seapoint/compare         colmap_seapoint/base colmap_seapoint/io/cloud
 colmap_seapoint/tracks          colmap_seapoint/base colmap_seapoint/io/colmap
@@ -41,14 +44,17 @@ colmap_seapoint/lens            colmap_seapoint/base colmap_seapoint/adjustment 
 colmap_seapoint/reposing        colmap_seapoint/base colmap_seapoint/io/colmap
 colmap_seapoint/mapping         colmap_seapoint/base colmap_seapoint/tracks colmap_seapoint/joining colmap_seapoint/reposing colmap_seapoint/lens colmap_seapoint/adjustment colmap_seapoint/adjustment/equations colmap_seapoint/remeasuring feature/remeasuring colmap_seapoint/io/files colmap_seapoint/io/colmap colmap_seapoint/io/image
 colmap_seapoint/cameras         colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/image
-colmap_seapoint/pictures        colmap_seapoint/base colmap_seapoint/cameras colmap_seapoint/io/* feature feature/* densify densify/*
+colmap_seapoint/pictures        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/cameras colmap_seapoint/markers colmap_seapoint/io/* feature feature/* densify densify/*
 colmap_seapoint/frames          colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/image colmap_seapoint/io/video feature feature/*
 colmap_seapoint/pairing         colmap_seapoint/base colmap_seapoint/io/* feature feature/*
 colmap_seapoint/remeasuring     colmap_seapoint/base feature/remeasuring
-colmap_seapoint/report          colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/georeference densify densify/*
-colmap_seapoint/pipeline/intake colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/pictures colmap_seapoint/frames colmap_seapoint/pipeline
-colmap_seapoint/pipeline        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/georeference colmap_seapoint/navigation colmap_seapoint/mapping colmap_seapoint/cameras colmap_seapoint/pictures colmap_seapoint/frames colmap_seapoint/pairing colmap_seapoint/report colmap_seapoint/pipeline/intake feature feature/* densify densify/*
-colmap_seapoint/cli             colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files colmap_seapoint/pipeline
+colmap_seapoint/report          colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/compare colmap_seapoint/georeference densify densify/*
+colmap_seapoint/workspace       colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/pictures
+colmap_seapoint/pipeline/intake colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/pictures colmap_seapoint/frames colmap_seapoint/workspace
+colmap_seapoint/pipeline        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/compare colmap_seapoint/estimate colmap_seapoint/georeference colmap_seapoint/navigation colmap_seapoint/mapping colmap_seapoint/cameras colmap_seapoint/pictures colmap_seapoint/frames colmap_seapoint/pairing colmap_seapoint/report colmap_seapoint/workspace colmap_seapoint/pipeline/intake feature feature/* densify densify/*
+colmap_seapoint/pipeline/markers colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/pictures colmap_seapoint/report colmap_seapoint/workspace
+colmap_seapoint/rendering       colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/workspace
+colmap_seapoint/cli             colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files colmap_seapoint/pipeline colmap_seapoint/pipeline/markers colmap_seapoint/rendering
 colmap_seapoint                 colmap_seapoint/base colmap_seapoint/system colmap_seapoint/cli
 END
 

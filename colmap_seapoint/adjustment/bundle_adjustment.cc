@@ -129,7 +129,8 @@ std::optional<BundleAdjustment> AdjustBundleInFull(const BundleAdjustmentOptions
   if (bundle.NumObservations() == 0) return std::nullopt;
   BundleValues values = ReadValues(bundle, freedom, model);
   BundleMinimizer minimizer(bundle, options.num_threads);
-  Progress progress("Bundle adjustment, steps at most", 2 * options.max_num_iterations);
+  Progress progress("Bundle adjustment, steps at most", 2 * options.max_num_iterations, 0,
+                    Work::kRefinement);
   BundleAdjustment adjustment;
   const auto minimize = [&](const RobustLoss& loss) {
     const int before = adjustment.num_iterations;

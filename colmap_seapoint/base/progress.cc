@@ -1,11 +1,14 @@
 #include "colmap_seapoint/base/progress.h"
 
+#include <signal.h>
 #include <unistd.h>
 
-#include <atomic>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <mutex>
+#include <functional>
+#include <system_error>
+#include <vector>
 
 namespace colmap_seapoint {
 namespace {
@@ -13,11 +16,20 @@ namespace {
 constexpr double kRewriteSeconds = 0.2;
 constexpr double kPlainLineSeconds = 10;
 constexpr double kPlainLineShare = 0.1;
-constexpr double kPlainLineMaxSeconds = 60;
+constexpr double kRewriteBeatSeconds = 1;
+
+using Clock = std::chrono::steady_clock;
 
 std::atomic<int> log_level{static_cast<int>(LogLevel::kInfo)};
 std::mutex stderr_mutex;
-bool line_is_open = false;  // a rewriting progress line stands on the terminal
+bool line_is_open = false;                   // a rewriting progress line stands on the terminal
+Clock::time_point last_word = Clock::now();  // on stderr, of whatever kind
+
+// Those that live, the innermost last. Held while one is asked what it says.
+std::mutex parts_mutex;
+std::vector<const Progress*> parts;
+std::atomic<WorkObserver*> observer{nullptr};
+const Clock::time_point program_start = Clock::now();
 
 bool IsEnabled(LogLevel level) { return static_cast<int>(level) <= log_level.load(); }
 
@@ -58,6 +70,7 @@ void LogLine(LogLevel level, const char* prefix, const std::string& line) {
   std::lock_guard<std::mutex> lock(stderr_mutex);
   WipeOpenLine();
   std::fprintf(stderr, "%s%s\n", prefix, Printable(line).c_str());
+  last_word = Clock::now();
 }
 
 void RewriteLine(const std::string& line) {
@@ -65,10 +78,70 @@ void RewriteLine(const std::string& line) {
   std::fprintf(stderr, "\r%s\033[K", Printable(line).c_str());
   std::fflush(stderr);
   line_is_open = true;
+  last_word = Clock::now();
 }
 
-double Seconds(std::chrono::steady_clock::duration duration) {
-  return std::chrono::duration<double>(duration).count();
+bool IsTerminal() {
+  static const bool is_terminal = isatty(STDERR_FILENO) == 1;
+  return is_terminal;
+}
+
+void ShowLine(const std::string& line) {
+  if (IsTerminal()) {
+    RewriteLine(line);
+  } else {
+    LogInfo(line);
+  }
+}
+
+double Seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
+
+double SecondsOfSilence() {
+  std::lock_guard<std::mutex> lock(stderr_mutex);
+  return Seconds(Clock::now() - last_word);
+}
+
+bool HasSomethingToCount() {
+  std::lock_guard<std::mutex> lock(parts_mutex);
+  return observer != nullptr || !parts.empty();
+}
+
+// What is said where nobody has asked for it. A part that has ended leaves silence behind it, too.
+std::string PresentLine() {
+  if (WorkObserver* const all = observer) return all->Line();
+  std::lock_guard<std::mutex> lock(parts_mutex);
+  if (!parts.empty()) return parts.back()->Line();
+  return "Working since " + DurationText(Seconds(Clock::now() - program_start));
+}
+
+// Says how far the work is where nothing has been said for long, or, on a terminal, where the
+// rewriting line is old.
+void ShowIfSilent() {
+  if (!IsEnabled(LogLevel::kInfo)) return;
+  WorkObserver* const all = observer;
+  const double plain = all != nullptr ? std::min(all->SecondsBetweenLines(), kMaxSilenceSeconds)
+                                      : kMaxSilenceSeconds;
+  const double longest = IsTerminal() ? kRewriteBeatSeconds : plain;
+  if (SecondsOfSilence() < longest) return;
+  if (IsTerminal() && !HasSomethingToCount()) return;
+  ShowLine(PresentLine());
+}
+
+constexpr std::chrono::milliseconds kBeat{500};
+
+// Signals are for the threads that work: a child's end, say, is waited for there.
+std::thread StartWithoutSignals(const std::function<void()>& run) {
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  std::thread thread;
+  try {
+    thread = std::thread(run);
+  } catch (const std::system_error&) {
+    // Silence is no reason to fail.
+  }
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  return thread;
 }
 
 }  // namespace
@@ -98,21 +171,34 @@ std::string DurationText(double seconds) {
   return text;
 }
 
-Progress::Progress(const std::string& label, int64_t total, int64_t already_done)
+void SetWorkObserver(WorkObserver* of_all_work) { observer = of_all_work; }
+
+Progress::Progress(const std::string& label, int64_t total, int64_t already_done, Work work)
     : label_(label),
       total_(total),
       already_done_(already_done),
-      is_terminal_(isatty(STDERR_FILENO) == 1),
+      work_(work),
       start_(Clock::now()),
       last_line_(start_),
-      last_done_(already_done) {}
+      last_done_(already_done),
+      done_(already_done) {
+  if (WorkObserver* const all = observer) all->Begin(work_, label_, total_, already_done_);
+  std::lock_guard<std::mutex> lock(parts_mutex);
+  parts.push_back(this);
+}
 
 Progress::~Progress() {
+  if (WorkObserver* const all = observer; all != nullptr && !finished_) all->End(work_);
+  {
+    std::lock_guard<std::mutex> lock(parts_mutex);
+    parts.erase(std::find(parts.begin(), parts.end(), this));
+  }
   std::lock_guard<std::mutex> lock(stderr_mutex);
   if (!finished_) WipeOpenLine();
 }
 
-std::string Progress::Line(int64_t done, double elapsed_seconds) const {
+std::string Progress::Line() const {
+  const int64_t done = done_;
   const double percent =
       total_ > 0 ? 100.0 * static_cast<double>(done) / static_cast<double>(total_) : 100;
   char numbers[96];
@@ -121,30 +207,29 @@ std::string Progress::Line(int64_t done, double elapsed_seconds) const {
   std::string line = label_ + numbers;
   const int64_t done_here = done - already_done_;
   if (done_here > 0 && done < total_) {
-    const double left =
-        elapsed_seconds * static_cast<double>(total_ - done) / static_cast<double>(done_here);
+    const double left = Seconds(Clock::now() - start_) * static_cast<double>(total_ - done) /
+                        static_cast<double>(done_here);
     line += ", " + DurationText(left) + " left";
   }
   return line;
 }
 
 void Progress::Update(int64_t done) {
-  if (!IsEnabled(LogLevel::kInfo) || finished_) return;
+  if (finished_) return;
+  done_ = done;
+  WorkObserver* const all = observer;
+  if (all != nullptr) all->Advance(work_, done);
+  if (!IsEnabled(LogLevel::kInfo)) return;
   const auto now = Clock::now();
-  const double since_line = Seconds(now - last_line_);
+  const double since_line = all != nullptr ? SecondsOfSilence() : Seconds(now - last_line_);
   const double further =
       static_cast<double>(done - last_done_) / static_cast<double>(total_ > 0 ? total_ : 1);
-  const bool due = is_terminal_
-                       ? since_line >= kRewriteSeconds
-                       : since_line >= kPlainLineSeconds &&
-                             (further >= kPlainLineShare || since_line >= kPlainLineMaxSeconds);
-  if (!due) return;
-  const std::string line = Line(done, Seconds(now - start_));
-  if (is_terminal_) {
-    RewriteLine(line);
-  } else {
-    LogInfo(line);
-  }
+  const bool is_due = IsTerminal() ? since_line >= kRewriteSeconds
+                      : all != nullptr
+                          ? since_line >= all->SecondsBetweenLines()
+                          : since_line >= kPlainLineSeconds && further >= kPlainLineShare;
+  if (!is_due) return;
+  ShowLine(all != nullptr ? all->Line() : Line());
   last_line_ = now;
   last_done_ = done;
 }
@@ -152,8 +237,25 @@ void Progress::Update(int64_t done) {
 void Progress::Finish() {
   if (finished_) return;
   finished_ = true;
+  if (WorkObserver* const all = observer) all->End(work_);
   LogInfo(label_ + ": " + std::to_string(total_) + " in " +
           DurationText(Seconds(Clock::now() - start_)));
+}
+
+Heartbeat::Heartbeat() {
+  thread_ = StartWithoutSignals([this] {
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (!ended_.wait_for(lock, kBeat, [this] { return is_over_; })) ShowIfSilent();
+  });
+}
+
+Heartbeat::~Heartbeat() {
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    is_over_ = true;
+  }
+  ended_.notify_all();
+  if (thread_.joinable()) thread_.join();
 }
 
 }  // namespace colmap_seapoint

@@ -2,9 +2,15 @@
 // feature/ and densify/ do not use it: they never print.
 #pragma once
 
+#include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
+#include <mutex>
 #include <string>
+#include <thread>
+
+#include "colmap_seapoint/base/work.h"
 
 namespace colmap_seapoint {
 
@@ -24,32 +30,56 @@ void LogDebug(const std::string& line);
 // "42 s", "3 min 05 s", "2 h 07 min".
 std::string DurationText(double seconds);
 
-// One counted job. On a terminal a single line is rewritten; elsewhere a plain line appears when
-// it tells something new: at least 10 s after the last one, and 10 % or a minute further.
+// One counted part of the work. On a terminal a single line is rewritten; elsewhere a plain line
+// appears when it tells something new: at least 10 s after the last one, and 10 % further. Where
+// the whole job is observed (work.h), the line is the observer's. While a Heartbeat lives
+// (heartbeat.h), a line also appears where nothing is counted for long.
 class Progress {
  public:
   // `already_done` of `total` were finished by an earlier run: they do not count for the speed.
-  Progress(const std::string& label, int64_t total, int64_t already_done = 0);
+  Progress(const std::string& label, int64_t total, int64_t already_done = 0,
+           Work work = Work::kOther);
   ~Progress();  // wipes an unfinished rewriting line
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
   void Update(int64_t done);
   void Finish();  // "<label>: <total> in <time>"
+  // What it says now, from any thread: how much is done, and the time left.
+  std::string Line() const;
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  std::string Line(int64_t done, double elapsed_seconds) const;
-
   std::string label_;
   int64_t total_ = 0;
   int64_t already_done_ = 0;
-  bool is_terminal_ = false;
+  Work work_;
   bool finished_ = false;
   Clock::time_point start_;
   Clock::time_point last_line_;
   int64_t last_done_ = 0;
+  std::atomic<int64_t> done_;
+};
+
+inline constexpr double kMaxSilenceSeconds = 20;
+
+// No silence: while it lives, a line says at least every kMaxSilenceSeconds how far the work is,
+// also where the work itself has nothing to count (a search in COLMAP, a matrix that is solved). On
+// a terminal the rewriting line is kept up to date.
+class Heartbeat {
+ public:
+  // A thread that the system does not give is done without.
+  Heartbeat();
+  ~Heartbeat();
+  Heartbeat(const Heartbeat&) = delete;
+  Heartbeat& operator=(const Heartbeat&) = delete;
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  bool is_over_ = false;
+  std::thread thread_;
 };
 
 }  // namespace colmap_seapoint

@@ -2,9 +2,12 @@
 #include "colmap_seapoint/pipeline/compare.h"
 #include "colmap_seapoint/pipeline/densify.h"
 #include "colmap_seapoint/pipeline/extract.h"
+#include "colmap_seapoint/pipeline/markers/marker_finder.h"
+#include "colmap_seapoint/pipeline/markers/print_markers.h"
 #include "colmap_seapoint/pipeline/match.h"
 #include "colmap_seapoint/pipeline/reconstruct.h"
 #include "colmap_seapoint/pipeline/scale.h"
+#include "colmap_seapoint/rendering/render_cloud.h"
 
 namespace colmap_seapoint {
 
@@ -19,12 +22,17 @@ std::vector<Command> AllCommands() {
                   RunExhaustiveMatcher),
       MakeCommand("spatial_matcher", "match each picture with those taken near it",
                   RunSpatialMatcher),
+      MakeCommand("marker_finder", "find coded markers in pictures, into a table", RunMarkerFinder),
+      MakeCommand("marker_sheet", "coded markers and scale bars to print, as a PDF",
+                  RunPrintMarkers),
       MakeCommand("model_scaler", "COLMAP model and cloud -> metres, from scale bars and positions",
                   RunModelScaler),
       MakeCommand("partial_densifier", "COLMAP model and pictures -> one dense cloud",
                   RunPartialDensifier),
       MakeCommand("cloud_comparer", "two clouds in one frame -> accuracy, completeness, density",
                   RunCloudComparer),
+      MakeCommand("render_cloud", "a cloud -> a picture of it, from above or as a camera saw it",
+                  RunCloudRenderer),
       MakeCommand("automatic_reconstructor", "a folder of pictures -> dense clouds, all in one",
                   RunAutomaticReconstructor),
   };

@@ -30,11 +30,25 @@ void PrintHelp(const std::vector<Command>& commands, std::ostream& out) {
       << "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 done but some input was left out.\n";
 }
 
-// `help [--format text|man|bash|markdown]`. The others are for the package and its reference: see
-// manual.h.
+// nullptr when there is none of that name.
+const Command* FindCommand(const std::vector<Command>& commands, const std::string& name) {
+  const auto found = std::find_if(commands.begin(), commands.end(),
+                                  [&](const Command& command) { return command.name == name; });
+  return found == commands.end() ? nullptr : &*found;
+}
+
+// `help [COMMAND | --format text|man|bash|markdown]`. The other formats are for the package and its
+// reference: see manual.h.
 ExitCode RunHelp(const std::vector<Command>& commands, const std::vector<std::string>& arguments) {
   if (arguments.empty()) {
     PrintHelp(commands, std::cout);
+    return kDone;
+  }
+  if (const Command* command = FindCommand(commands, arguments[0]);
+      command != nullptr && arguments.size() == 1) {
+    OptionTable table;
+    command->bind(&table);
+    PrintCommandHelp(*command, table, std::cout);
     return kDone;
   }
   const std::string format =
@@ -49,8 +63,8 @@ ExitCode RunHelp(const std::vector<Command>& commands, const std::vector<std::st
     PrintMarkdown(commands, std::cout);
   } else {
     throw UsageError(
-        "help takes --format text, man, bash or markdown; 'colmap_seapoint <command> -h' lists "
-        "the options of a command");
+        "help takes the name of one command, or --format text, man, bash or markdown; "
+        "'colmap_seapoint help' lists the commands");
   }
   return kDone;
 }
@@ -80,7 +94,11 @@ ExitCode RunCommand(const Command& command, const std::vector<std::string>& argu
     return kDone;
   }
   ApplyRunOptions(table);
-  const CommandResult result = command.run();
+  CommandResult result;
+  {
+    const Heartbeat heartbeat;
+    result = command.run();
+  }
   std::cout << result.text << std::flush;
   return result.is_complete ? kDone : kIncomplete;
 }
@@ -101,10 +119,8 @@ ExitCode RunProgram(const std::vector<std::string>& arguments) {
     std::cout << "colmap_seapoint " << Version() << "\n";
     return kDone;
   }
-  for (const Command& command : commands) {
-    if (command.name == name) {
-      return RunCommand(command, {arguments.begin() + 1, arguments.end()});
-    }
+  if (const Command* command = FindCommand(commands, name)) {
+    return RunCommand(*command, {arguments.begin() + 1, arguments.end()});
   }
   throw UsageError("'" + name + "' is no command; 'colmap_seapoint help' lists them");
 }

@@ -11,6 +11,7 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr int kLineHeight = 2;  // pixels between stacked pictures
+constexpr double kCoreTrim = 0.01;
 
 using Points = std::vector<Eigen::Vector3d>;
 
@@ -65,7 +66,7 @@ Eigen::Vector3d Positive(const Eigen::Vector3d& direction) {
 PlanView FitPlanView(const Points& points_a, const Points& points_b,
                      const Eigen::Vector3d& normal_sum) {
   SEAPOINT_CHECK(!points_a.empty() || !points_b.empty());
-  constexpr double kCoreTrim = 0.01, kBoundsTrim = 0.001;
+  constexpr double kBoundsTrim = 0.001;
   Eigen::Array3d low, high;
   for (int i = 0; i < 3; ++i) {
     const auto bounds = TrimmedBounds(
@@ -96,6 +97,16 @@ PlanView FitPlanView(const Points& points_a, const Points& points_b,
     view.high[i] = bounds[1];
   }
   return view;
+}
+
+void TrimPlanView(const Points& points, double margin, PlanView* view) {
+  for (int i = 0; i < 3; ++i) {
+    const auto bounds = TrimmedBounds(
+        Positions(points, {}, view->axes.row(i).transpose(), view->center), kCoreTrim);
+    const double beyond = margin * (bounds[1] - bounds[0]);
+    view->low[i] = std::max(view->low[i], bounds[0] - beyond);
+    view->high[i] = std::min(view->high[i], bounds[1] + beyond);
+  }
 }
 
 std::array<uint8_t, 3> RampColor(double share) {

@@ -29,6 +29,10 @@ PlanView FitPlanView(const std::vector<Eigen::Vector3d>& points_a,
                      const std::vector<Eigen::Vector3d>& points_b,
                      const Eigen::Vector3d& normal_sum);
 
+// Narrows the bounds to those of 98 % of the points at each axis, and `margin` of that extent
+// beyond them: one point in fifty may lie anywhere without making the rest small.
+void TrimPlanView(const std::vector<Eigen::Vector3d>& points, double margin, PlanView* view);
+
 // From blue at 0 over green to red at 1; a share outside counts as the nearer end.
 std::array<uint8_t, 3> RampColor(double share);
 
@@ -40,6 +44,7 @@ class PlanPicture {
   PlanPicture(const PlanView& view, int width, int max_height);
   void Add(const Eigen::Vector3d& xyz, const std::array<uint8_t, 3>& rgb);
   const ColorImage& Picture() const { return picture_; }
+  double PixelsAUnit() const { return scale_; }
 
  private:
   PlanView view_;

@@ -9,6 +9,8 @@
 #include "colmap_seapoint/base/median.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/base/run_options.h"
+#include "colmap_seapoint/georeference/marker_places.h"
+#include "colmap_seapoint/georeference/marker_search.h"
 #include "colmap_seapoint/georeference/triangulate_target.h"
 #include "colmap_seapoint/io/files/map_projection.h"
 #include "colmap_seapoint/io/files/positions_csv.h"
@@ -199,6 +201,37 @@ Targets TriangulateTargets(const SparseModel& model, const ScaleSources& sources
   return targets;
 }
 
+using Markers = std::map<MarkerName, MarkerPlace>;
+
+MarkerCounts CountsOf(const Markers& markers) {
+  MarkerCounts counts;
+  for (const auto& [name, place] : markers) {
+    if (place.num_seen > 0) counts[name] = place.num_seen;
+  }
+  return counts;
+}
+
+// The bars' coded markers take their places among the targets; marks in a table come first.
+void AddMarkers(const std::vector<ScaleBar>& bars, const Markers& markers, Targets* targets,
+                ScaleMeasurements* result) {
+  for (const ScaleBar& bar : bars) {
+    for (const ScaleBarEnd& end : bar.ends) {
+      const auto name = ParseMarkerName(end.name).name;
+      if (!name || targets->count(end.name) > 0) continue;
+      const auto found = markers.find(*name);
+      MarkerPlace place;
+      place.problem = "is found in no picture; found: " + MostFound(CountsOf(markers));
+      if (found != markers.end()) place = found->second;
+      TriangulatedTarget& target = (*targets)[end.name];
+      target.problem = place.problem;
+      target.xyz = place.xyz;
+      target.covariance = place.covariance;
+      result->targets.push_back(
+          {end.name, place.problem, place.num_seen, place.num_used, place.rms_pixels});
+    }
+  }
+}
+
 // Where the end of a bar lies in the model.
 struct Place {
   std::string problem;  // why it has no place; empty: it has one
@@ -219,7 +252,9 @@ Place PlaceOf(const SparseModel& model, const ScaleSources& sources, const Scale
   if (target == targets.end()) {
     throw Error(bar.where, "'" + end.name + "' is no target",
                 sources.targets_path.empty()
-                    ? "give --targets_path, or point:ID for a 3D point of the model"
+                    ? "give --targets_path, or write a coded marker (tag36h11:12) or point:ID for "
+                      "a 3D point "
+                      "of the model"
                     : "mark it in " + sources.targets_path +
                           ", or write point:ID for a 3D point of the model");
   }
@@ -245,11 +280,12 @@ LengthMeasurement LengthBetween(const Place& a, const Place& b) {
   return length;
 }
 
-void AddBars(const SparseModel& model, const ScaleSources& sources, ScaleMeasurements* result,
-             RunReport* report) {
+void AddBars(const SparseModel& model, const ScaleSources& sources, const Markers& markers,
+             ScaleMeasurements* result, RunReport* report) {
   if (sources.scale_bars_path.empty()) return;
   const std::vector<ScaleBar> bars = ReadScaleBarsCsv(sources.scale_bars_path);
-  const Targets targets = TriangulateTargets(model, sources, result);
+  Targets targets = TriangulateTargets(model, sources, result);
+  AddMarkers(bars, markers, &targets, result);
   for (const ScaleBar& bar : bars) {
     const std::string name = bar.ends[0].name + " - " + bar.ends[1].name;
     const Place a = PlaceOf(model, sources, bar, bar.ends[0], targets);
@@ -264,6 +300,25 @@ void AddBars(const SparseModel& model, const ScaleSources& sources, ScaleMeasure
     length.sigma = bar.sigma.value_or(sources.length_sigma);
     result->problem.lengths.push_back(length);
     result->length_names.push_back(name);
+  }
+}
+
+// Every marker that has a place is as long as its side.
+void AddMarkerSides(const ScaleSources& sources, const Markers& markers,
+                    ScaleMeasurements* result) {
+  if (sources.marker_size <= 0) return;
+  const auto families = ParseMarkerFamilies(sources.marker_families);
+  for (const auto& [name, place] : markers) {
+    const bool is_of_them =
+        families && std::count(families->begin(), families->end(), name.family) > 0;
+    if (!is_of_them || !place.problem.empty()) continue;
+    LengthMeasurement length;
+    length.in_model = place.side;
+    length.in_model_sigma = place.side_sigma;
+    length.metres = sources.marker_size;
+    length.sigma = sources.length_sigma;
+    result->problem.lengths.push_back(length);
+    result->length_names.push_back("side of " + MarkerText(name));
   }
 }
 
@@ -310,7 +365,7 @@ Eigen::Vector3d MeanViewingDirection(const SparseModel& model) {
 }  // namespace
 
 void CheckScaleTables(const ScaleSources& sources) {
-  if (!sources.scale_bars_path.empty()) ReadScaleBarsCsv(sources.scale_bars_path);
+  MarkersOfBars(sources);
   if (!sources.targets_path.empty()) ReadTargetsCsv(sources.targets_path);
   if (!sources.nav.empty()) ReadNavLogs(sources.nav, kNavOption);
   if (!sources.nav_times.empty()) ReadPictureTimes(sources.nav_times, kNavTimesOption);
@@ -346,6 +401,7 @@ void CheckScaleNames(const ScaleSources& sources, const std::vector<std::string>
 }
 
 ScaleMeasurements GatherMeasurements(const SparseModel& model, const ScaleSources& sources,
+                                     const std::vector<MarkerSighting>& sightings,
                                      const StereoRig& rig, int seed, RunReport* report,
                                      const MeasuredPositions* measured) {
   ScaleMeasurements result;
@@ -354,14 +410,21 @@ ScaleMeasurements GatherMeasurements(const SparseModel& model, const ScaleSource
   result.problem.down_in_model = MeanViewingDirection(model);
   if (sources.HasPositionTable()) AddPositionTable(model, sources, &result);
   if (measured != nullptr) AddPositions(model, *measured, &result);
-  AddBars(model, sources, &result, report);
+  const Markers markers = PlaceMarkers(model, sightings, sources.max_target_error);
+  AddBars(model, sources, markers, &result, report);
+  AddMarkerSides(sources, markers, &result);
   AddRig(model, sources, rig, &result);
   if (!result.problem.positions.empty() || !result.problem.lengths.empty()) return result;
+  if (sources.scale_bars_path.empty()) {
+    throw Error("--marker_size",
+                "no marker has a place in the model; found: " + MostFound(CountsOf(markers)),
+                "see that two of its pictures show one whole, and that --marker_families is right");
+  }
   throw Error(sources.scale_bars_path,
               "no bar has two ends in the model: " + (report->left_out.empty()
                                                           ? std::string("none is given")
                                                           : report->left_out.back().reason),
-              "mark both ends of a bar in two pictures of the model at least");
+              "see that two of its pictures at least show each end of a bar, or mark them there");
 }
 
 }  // namespace colmap_seapoint

@@ -1,5 +1,5 @@
 // What is known of a model's size and place: scale bars, positions of its pictures, the spacing of
-// a rig. The measurements that the sources give for one model.
+// a rig, coded markers. The measurements that the sources give for one model.
 #pragma once
 
 #include <string>
@@ -9,6 +9,7 @@
 #include "colmap_seapoint/base/stereo_rig.h"
 #include "colmap_seapoint/georeference/estimate_similarity.h"
 #include "colmap_seapoint/georeference/scale_sources.h"
+#include "colmap_seapoint/io/files/markers_csv.h"
 #include "colmap_seapoint/io/files/model_units.h"
 #include "colmap_seapoint/io/files/positions_csv.h"
 #include "colmap_seapoint/io/files/run_report.h"
@@ -45,11 +46,13 @@ void CheckScaleNames(const ScaleSources& sources, const std::vector<std::string>
 
 // Reads the tables, triangulates the targets and finds the pictures. Pictures of the tables that
 // the model does not hold (they may be in other models) are named once, on stderr; bars that do not
-// have both ends in the model are left out by name. `rig` is by image_idx of `model`. Throws Error
-// for a bad table, a point:ID that is not there, a mark outside its picture, a rig without
-// simultaneous pictures, and when nothing of the sources is in the model. `measured`: positions
-// that take the place of a table's; nullptr = none.
+// have both ends in the model are left out by name. `rig` is by image_idx of `model`, `sightings`
+// are the coded markers found in the pictures (of any model). Throws Error for a bad table, a
+// point:ID that is not there, a mark outside its picture, a rig without simultaneous pictures, and
+// when nothing of the sources is in the model. `measured`: positions that take the place of a
+// table's; nullptr = none.
 ScaleMeasurements GatherMeasurements(const SparseModel& model, const ScaleSources& sources,
+                                     const std::vector<MarkerSighting>& sightings,
                                      const StereoRig& rig, int seed, RunReport* report,
                                      const MeasuredPositions* measured = nullptr);
 

@@ -1,5 +1,5 @@
 // Where a model's size and place are known from: tables of scale bars, targets and positions, a
-// navigation log, the spacing of a rig.
+// navigation log, the spacing of a rig, the size of coded markers.
 #pragma once
 
 #include <optional>
@@ -25,8 +25,10 @@ struct ScaleSources {
   double max_nav_offset = 120;           // that is looked for, seconds
   std::string crs;                       // "EPSG:32755"; empty = east, north, up of the place
   double rig_spacing = 0;                // between the two cameras of a rig, metres; 0 = unknown
-  double length_sigma = 0.001;           // of lengths that do not give theirs, metres
-  double max_target_error = 4;           // of a mark that is used, pixels
+  double marker_size = 0;                // side of the markers' black squares, metres; 0 = unknown
+  std::string marker_families = "tag36h11";  // of the markers that have marker_size
+  double length_sigma = 0.001;               // of lengths that do not give theirs, metres
+  double max_target_error = 4;               // of a mark that is used, pixels
 
   void Bind(OptionTable* table);
   // Whether the user has given any: else EXIF is asked.

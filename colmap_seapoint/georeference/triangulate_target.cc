@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kMinRayAngle = 0.5 * 3.14159265358979323846 / 180;
 constexpr int kMaxIterations = 20;
+// Rays that are paired for the start: of more views, so many that lie evenly among them.
+constexpr size_t kMaxRays = 60;
 constexpr int kMaxRounds = 5;
 
 struct Ray {
@@ -99,10 +101,12 @@ std::optional<Eigen::Vector3d> BestMeeting(const std::vector<TargetView>& views,
   for (const TargetView& view : views) rays.push_back(RayOf(view));
   std::optional<Eigen::Vector3d> best;
   double best_cost = std::numeric_limits<double>::infinity();
-  for (size_t i = 0; i < views.size(); ++i) {
-    for (size_t j = i + 1; j < views.size(); ++j) {
-      if (!rays[i] || !rays[j]) continue;
-      const auto xyz = Meet(*rays[i], *rays[j]);
+  const size_t num_rays = std::min(views.size(), kMaxRays);
+  const auto ray = [&](size_t k) { return rays[k * views.size() / num_rays]; };
+  for (size_t i = 0; i < num_rays; ++i) {
+    for (size_t j = i + 1; j < num_rays; ++j) {
+      if (!ray(i) || !ray(j)) continue;
+      const auto xyz = Meet(*ray(i), *ray(j));
       if (!xyz) continue;
       double cost = 0;
       for (const TargetView& view : views) cost += std::min(Error(view, *xyz), max_error);

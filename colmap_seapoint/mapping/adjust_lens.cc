@@ -120,7 +120,7 @@ std::string WhatIsKnown(const LensChoice& choice, const BundleAdjustment& adjust
 }
 
 std::string Refusal(const char* what, const std::string& fault) {
-  return fault.empty() ? "" : std::string("; ") + what + " refused: " + fault;
+  return fault.empty() ? "" : std::string("; ") + what + " kept as the mapper left it: " + fault;
 }
 
 // Measures the observations again, chooses the form of the lens that they prove, unless it is held,

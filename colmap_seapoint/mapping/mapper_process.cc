@@ -59,8 +59,8 @@ std::vector<std::string> Arguments(const ColmapProgram& colmap, const MapperCall
 }  // namespace
 
 MapperEnd RunMapperProcess(const ColmapProgram& colmap, const MapperCall& call) {
-  Progress progress("Pictures registered by colmap mapper",
-                    static_cast<int64_t>(call.num_pictures));
+  Progress progress("Pictures registered by colmap mapper", static_cast<int64_t>(call.num_pictures),
+                    0, Work::kRegistration);
   std::string last_message;
   bool says_no_model = false;
   const auto read_line = [&](const std::string& line) {

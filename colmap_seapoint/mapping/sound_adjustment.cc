@@ -50,7 +50,8 @@ LensForm FirstForm(bool frees_principal_point) {
 }
 
 SoundAdjustment AdjustSoundly(const SparseModel& before, const LensLimits& limits) {
-  if (before.images.size() < kMinPictures) return {{}, "too few pictures"};
+  if (before.images.size() < kMinPictures)
+    return {{}, "it takes three pictures at least to tell the lens"};
   BundleAdjustmentOptions options;
   options.lenses = limits.holds_lens ? AllLensesHeld(before)
                                      : FreedomOfLenses(limits.form, before, limits.prior_focals);

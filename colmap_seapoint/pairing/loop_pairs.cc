@@ -101,7 +101,7 @@ std::vector<LoopCandidate> LoopFinder::FindCandidates() {
   const auto count = static_cast<int64_t>(sequence_.size());
   const int num_threads = EffectiveNumThreads(search_.run.num_threads);
   std::vector<std::vector<RetrievedPicture>> retrieved;
-  Progress progress("Look-alikes of pictures", count);
+  Progress progress("Look-alikes of pictures", count, 0, Work::kLookAlikes);
   OrderedPipeline<std::vector<RetrievedPicture>>(
       num_threads, count, 4 * num_threads, [&](int64_t i) { return Query(index, i); },
       [&](int64_t i, std::vector<RetrievedPicture>&& of_one) {

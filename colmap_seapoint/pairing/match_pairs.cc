@@ -25,13 +25,23 @@ constexpr size_t kNamesInWarning = 5;
 // overlap, in a synthetic dive of 2,000 pictures, two passed with 15 and none with 30.
 constexpr int kDemandingInliers = 30;
 
-std::vector<ImagePair> PairsWithoutRows(const std::vector<ImagePair>& pairs,
-                                        const ColmapDatabase& database) {
-  std::vector<ImagePair> missing;
+struct PairsToMatch {
+  std::vector<ImagePair> pairs;
+  int64_t num_again = 0;  // of them, matched before with other options
+};
+
+PairsToMatch FindPairsToMatch(const std::vector<ImagePair>& pairs, const std::string& asked,
+                              const ColmapDatabase& database) {
+  PairsToMatch found;
   for (const ImagePair& pair : pairs) {
-    if (!HasMatches(database, pair)) missing.push_back(pair);
+    if (HasMatches(database, pair)) {
+      const std::string matching = MatchingOf(database, pair);
+      if (matching.empty() || matching == asked) continue;
+      ++found.num_again;
+    }
+    found.pairs.push_back(pair);
   }
-  return missing;
+  return found;
 }
 
 const Camera& CameraOf(uint32_t image_id, const std::map<uint32_t, Camera>& cameras,
@@ -79,17 +89,21 @@ std::vector<DatabaseImage> ImagesWithSeaPoints(const std::string& database_path,
 }
 
 void MatchPairs(const std::vector<ImagePair>& pairs, const SeaPointMatchingOptions& options,
-                double min_overlap_share, int num_threads, ColmapDatabase* database,
-                RunReport* report) {
+                const std::string& asked, double min_overlap_share, int num_threads,
+                ColmapDatabase* database, RunReport* report) {
   const std::map<uint32_t, Camera> cameras = ReadCameras(*database);
   std::map<uint32_t, DatabaseImage> images;
   for (const DatabaseImage& image : ReadImages(*database)) images[image.image_id] = image;
-  const std::vector<ImagePair> missing = PairsWithoutRows(pairs, *database);
+  const PairsToMatch to_do = FindPairsToMatch(pairs, asked, *database);
+  const std::vector<ImagePair>& missing = to_do.pairs;
+  if (to_do.num_again > 0) {
+    LogInfo(std::to_string(to_do.num_again) + " pairs were matched with other options: once more");
+  }
   const auto total = static_cast<int64_t>(pairs.size());
   const auto count = static_cast<int64_t>(missing.size());
   FeatureStore store(database);
   std::optional<DatabaseTransaction> batch;
-  Progress progress("Matches of pairs", total, total - count);
+  Progress progress("Matches of pairs", total, total - count, Work::kPairs);
   num_threads = EffectiveNumThreads(num_threads);
   OrderedPipeline<MatchedPair>(
       num_threads, count, 4 * num_threads,
@@ -104,6 +118,7 @@ void MatchPairs(const std::vector<ImagePair>& pairs, const SeaPointMatchingOptio
         std::lock_guard<std::mutex> lock(store.Mutex());
         if (!batch) batch.emplace(database);
         WriteMatches(database, id1, id2, matched.matches, matched.geometry);
+        NoteMatching(database, std::minmax(id1, id2), asked);
         if ((i + 1) % kPairsPerTransaction == 0 || i + 1 == count) {
           batch->Commit();
           batch.reset();

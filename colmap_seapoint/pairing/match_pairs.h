@@ -18,12 +18,14 @@ namespace colmap_seapoint {
 std::vector<DatabaseImage> ImagesWithSeaPoints(const std::string& database_path,
                                                const ColmapDatabase& database, RunReport* report);
 
-// Pairs that have a row are skipped: the same call again goes on where an earlier one stopped.
+// Pairs that have a row are skipped: the same call again goes on where an earlier one stopped. Not
+// so those that MatchPairs() has matched with other `asked`, the user's options: they are matched
+// again. What others have matched stays.
 // What is written does not depend on num_threads. A pair counts as verified only when its
 // inliers' OverlapShare is at least `min_overlap_share`.
 void MatchPairs(const std::vector<ImagePair>& pairs, const SeaPointMatchingOptions& options,
-                double min_overlap_share, int num_threads, ColmapDatabase* database,
-                RunReport* report);
+                const std::string& asked, double min_overlap_share, int num_threads,
+                ColmapDatabase* database, RunReport* report);
 
 // The same, but with at least 30 inliers: for pairs by the thousand that were chosen for looking
 // alike.

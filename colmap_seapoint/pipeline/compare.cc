@@ -12,10 +12,10 @@
 #include "colmap_seapoint/io/outputs/output_folder.h"
 #include "colmap_seapoint/io/outputs/replaceable_file.h"
 #include "colmap_seapoint/io/outputs/same_file.h"
-#include "colmap_seapoint/pipeline/earlier_outputs.h"
-#include "colmap_seapoint/pipeline/output_paths.h"
 #include "colmap_seapoint/report/comparison_report.h"
 #include "colmap_seapoint/report/difference_files.h"
+#include "colmap_seapoint/workspace/earlier_outputs.h"
+#include "colmap_seapoint/workspace/output_paths.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -41,10 +41,6 @@ std::vector<double> ParseDistances(const std::string& text) {
                      " or fewer");
   }
   return distances;
-}
-
-std::filesystem::path FolderOf(const std::filesystem::path& file) {
-  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
 }
 
 CompareOptions ToCompareOptions(const CloudComparerOptions& options) {

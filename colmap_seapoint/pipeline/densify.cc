@@ -20,11 +20,11 @@
 #include "colmap_seapoint/pictures/model_pictures.h"
 #include "colmap_seapoint/pictures/picture_scale.h"
 #include "colmap_seapoint/pictures/read_rig.h"
-#include "colmap_seapoint/pipeline/earlier_outputs.h"
-#include "colmap_seapoint/pipeline/output_paths.h"
 #include "colmap_seapoint/pipeline/write_maps.h"
 #include "colmap_seapoint/report/debug_figures.h"
 #include "colmap_seapoint/report/pairs_csv.h"
+#include "colmap_seapoint/workspace/earlier_outputs.h"
+#include "colmap_seapoint/workspace/output_paths.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -141,7 +141,10 @@ SequenceReport Densify(const PartialDensifierOptions& options, const SparseModel
     }
   };
   callbacks.progress = [&](int64_t done, int64_t total) {
-    if (!progress) progress = std::make_unique<Progress>("Densification steps", total);
+    if (!progress) {
+      progress =
+          std::make_unique<Progress>("Making the cloud, steps", total, 0, Work::kDensification);
+    }
     progress->Update(done);
   };
   if (options.densification.write_debug) {

@@ -16,8 +16,8 @@
 #include "colmap_seapoint/io/image/picture_masks.h"
 #include "colmap_seapoint/io/outputs/run_lock.h"
 #include "colmap_seapoint/pairing/tilted_pairs.h"
-#include "colmap_seapoint/pipeline/output_paths.h"
 #include "colmap_seapoint/system/memory_budget.h"
+#include "colmap_seapoint/workspace/output_paths.h"
 #include "feature/extract_features.h"
 
 namespace colmap_seapoint {
@@ -129,7 +129,7 @@ void ExtractAll(const Extractor& extractor, int num_threads,
   }
   const auto count = static_cast<int64_t>(pictures.size());
   int64_t num_unchanged = 0;
-  Progress progress("SeaPoints of pictures", count);
+  Progress progress("SeaPoints of pictures", count, 0, Work::kPictures);
   OrderedPipeline<Extracted>(
       num_threads, count, 2 * num_threads,
       [&](int64_t i) {

@@ -14,7 +14,7 @@
 #include "colmap_seapoint/io/files/run_report_json.h"
 #include "colmap_seapoint/mapping/initial_pair.h"
 #include "colmap_seapoint/mapping/mapper_process.h"
-#include "colmap_seapoint/pipeline/workspace_database.h"
+#include "colmap_seapoint/workspace/workspace_database.h"
 
 namespace colmap_seapoint {
 namespace {

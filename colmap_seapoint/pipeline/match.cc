@@ -13,7 +13,7 @@
 #include "colmap_seapoint/pairing/match_pairs.h"
 #include "colmap_seapoint/pairing/pair_lists.h"
 #include "colmap_seapoint/pairing/spatial_pairs.h"
-#include "colmap_seapoint/pipeline/output_paths.h"
+#include "colmap_seapoint/workspace/output_paths.h"
 #include "feature/matching/overlap_share.h"
 
 namespace colmap_seapoint {
@@ -35,6 +35,11 @@ RunReport Match(const std::string& command, const Options& options, const MatchI
   }
   WriteRunReport(report_path, report);
   return report;
+}
+
+// Pairs that were matched with other options are matched again.
+std::string Asked(const SeaPointMatchingOptions& options) {
+  return std::string(kMatchingVersion) + ":" + OptionsFingerprint(OptionValues(options));
 }
 
 void BindDatabase(std::string* path, OptionTable* table) {
@@ -84,17 +89,18 @@ RunReport MatchSequentially(const SequentialMatcherOptions& options, ColmapDatab
     const auto sequential = SequentialPairs(images, choice.overlap);
     std::copy_if(sequential.begin(), sequential.end(), std::back_inserter(further),
                  [&](const ImagePair& pair) { return is_next.count(pair) == 0; });
-    MatchPairs(next, options.matching, 0, options.run.num_threads, database, report);
-    MatchPairs(further, DemandingOptions(options.matching), kMinOverlapShare,
-               options.run.num_threads, database, report);
+    MatchPairs(next, options.matching, Asked(options.matching), 0, options.run.num_threads,
+               database, report);
+    MatchPairs(further, DemandingOptions(options.matching), Asked(options.matching),
+               kMinOverlapShare, options.run.num_threads, database, report);
   };
   return Match("sequential_matcher", options, match_images, database);
 }
 
 RunReport MatchExhaustively(const ExhaustiveMatcherOptions& options, ColmapDatabase* database) {
   const auto match_images = [&](const std::vector<DatabaseImage>& images, RunReport* report) {
-    MatchPairs(ExhaustivePairs(images), options.matching, kMinOverlapShare, options.run.num_threads,
-               database, report);
+    MatchPairs(ExhaustivePairs(images), options.matching, Asked(options.matching), kMinOverlapShare,
+               options.run.num_threads, database, report);
   };
   return Match("exhaustive_matcher", options, match_images, database);
 }
@@ -104,8 +110,8 @@ RunReport MatchSpatially(const SpatialMatcherOptions& options, ColmapDatabase* d
     SortNaturally(&images);
     const auto placed = PlaceImages(images, options.pairs, options.image_path,
                                     options.database_path, *database, report);
-    MatchPairs(SpatialPairs(placed, options.pairs), options.matching, kMinOverlapShare,
-               options.run.num_threads, database, report);
+    MatchPairs(SpatialPairs(placed, options.pairs), options.matching, Asked(options.matching),
+               kMinOverlapShare, options.run.num_threads, database, report);
   };
   return Match("spatial_matcher", options, match_images, database);
 }

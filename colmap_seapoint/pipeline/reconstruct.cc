@@ -8,9 +8,12 @@
 #include <vector>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/cameras/camera_identity.h"
 #include "colmap_seapoint/cameras/exif_focal_length.h"
+#include "colmap_seapoint/estimate/preflight.h"
+#include "colmap_seapoint/georeference/marker_search.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/colmap/database_features.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
@@ -20,6 +23,7 @@
 #include "colmap_seapoint/io/image/picture_masks.h"
 #include "colmap_seapoint/mapping/second_chance.h"
 #include "colmap_seapoint/pairing/tilted_pairs.h"
+#include "colmap_seapoint/pictures/duplicates.h"
 #include "colmap_seapoint/pictures/exif_positions.h"
 #include "colmap_seapoint/pipeline/densify_models.h"
 #include "colmap_seapoint/pipeline/extract.h"
@@ -27,8 +31,8 @@
 #include "colmap_seapoint/pipeline/map.h"
 #include "colmap_seapoint/pipeline/match.h"
 #include "colmap_seapoint/pipeline/scale_models.h"
-#include "colmap_seapoint/pipeline/workspace_database.h"
 #include "colmap_seapoint/report/reconstruction_summary.h"
+#include "colmap_seapoint/workspace/workspace_database.h"
 #include "feature/match_features.h"
 
 namespace colmap_seapoint {
@@ -64,6 +68,39 @@ Stage DatabaseStage(const Options& options, const std::vector<ReadablePicture>& 
             CameraKey(info.camera);
   }
   return {"database", kMatchingVersion, text, ""};
+}
+
+JobSize SizeOf(const Options& options, const std::vector<ReadablePicture>& pictures) {
+  const bool matches_all_pairs = MatchesAllPairs(options, pictures.size());
+  JobSize size;
+  size.num_pictures = static_cast<int64_t>(pictures.size());
+  for (const ReadablePicture& picture : pictures) {
+    size.megapixels += 1e-6 * picture.info.width * picture.info.height;
+  }
+  size.finds_look_alikes = !matches_all_pairs && options.pairs.loop_detection;
+  size.num_pairs = matches_all_pairs
+                       ? size.num_pictures * (size.num_pictures - 1) / 2
+                       : ExpectedSequentialPairs(size.num_pictures, options.pairs.overlap,
+                                                 size.finds_look_alikes);
+  size.step = options.densification.step;
+  size.writes_maps = options.densification.write_maps;
+  size.num_threads = EffectiveNumThreads(options.run.num_threads);
+  return size;
+}
+
+// Whether a stage is up to date is known when its turn comes; here that its record is there, beside
+// a database that is begun with the same pictures and options, is enough.
+OfWork<bool> DoneBefore(const Stage& database, const WorkspaceState& state) {
+  OfWork<bool> done;
+  const auto begun = state.Read(database.name);
+  if (!begun || begun->value("fingerprint", "") != StageFingerprint(database)) return done;
+  if (!state.Read("mapper")) return done;
+  for (const Work work :
+       {Work::kPictures, Work::kLookAlikes, Work::kPairs, Work::kRegistration, Work::kRefinement}) {
+    done[work] = true;
+  }
+  done[Work::kDensification] = done[Work::kMaps] = state.Read("dense_0").has_value();
+  return done;
 }
 
 // The stage that finds the untied pictures: all that decides which they are, but for what the
@@ -111,6 +148,20 @@ FeatureExtractorOptions ExtractorOptions(const Options& options, const Workspace
   extractor.extraction = options.extraction;
   extractor.run = options.run;
   return extractor;
+}
+
+// Each once. Throws Error when that leaves a single one.
+PictureSet ReadPictures(const Options& options, const Workspace& workspace) {
+  PictureSet pictures = ReadPictureSet(ExtractorOptions(options, workspace));
+  for (auto& twin :
+       LeaveOutDuplicates(workspace.images, options.run.num_threads, &pictures.readable)) {
+    pictures.left_out.push_back(std::move(twin));
+  }
+  if (pictures.readable.size() > 1) return pictures;
+  throw Error(options.image_path,
+              "holds one picture that can be used, " + pictures.readable.front().name,
+              "depth takes two pictures at least that show the same place from different points: "
+              "add more, which overlap by half or more");
 }
 
 RunReport MatchAll(const Options& options, const Workspace& workspace, size_t num_pictures,
@@ -183,6 +234,15 @@ std::vector<ModelSummary> ReadModels(const std::vector<fs::path>& paths, RunRepo
   return models;
 }
 
+// Before the hours of mapping, so that a marker that no picture shows is known by then.
+void FindMarkersOfDive(const Options& options, const Workspace& workspace, WorkspaceState* state,
+                       RunReport* report) {
+  const MarkerSearch search = {FamiliesToFind(options.scale), report->inputs,
+                               options.run.num_threads};
+  const auto sightings = FindMarkersOnce(search, workspace, state, report);
+  for (const std::string& line : MissingMarkers(options.scale, sightings)) LogWarning(line);
+}
+
 // Into sparse_scaled/<k>: the mapper's own models stay as they are.
 void ScaleModels(const Options& options, const PictureSet& pictures, const Workspace& workspace,
                  const std::string& mapper_fingerprint, WorkspaceState* state,
@@ -191,6 +251,7 @@ void ScaleModels(const Options& options, const PictureSet& pictures, const Works
   scaler.image_path = workspace.images.string();
   scaler.rig = options.rig;
   scaler.sources = options.scale;
+  if (!FamiliesToFind(options.scale).empty()) scaler.markers_path = workspace.markers.string();
   scaler.run = options.run;
   const PictureRecords records = RecordsFromExif(pictures.readable);
   AddPart(ScaleAllModels(scaler, records, workspace, mapper_fingerprint, state, models), report);
@@ -293,19 +354,23 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& giv
 
   TakeInPictures({options.frames, options.run.num_threads}, &workspace, &state, &report);
   plan.job.image_path = workspace.images;
-  const PictureSet pictures = ReadPictureSet(ExtractorOptions(options, workspace));
+  const PictureSet pictures = ReadPictures(options, workspace);
   CheckScaleNames(options.scale, NamesOf(pictures));
   const Stage begin = DatabaseStage(options, pictures.readable);
+  JobProgress progress(PlanJob(SizeOf(options, pictures.readable), workspace.root,
+                               options.check_disk, DoneBefore(begin, state)));
   ColmapDatabase database =
       OpenWorkspaceDatabase(workspace.database, pictures.readable, options.reader, begin, &state);
   const Stage second_chance = SecondChanceStage(options, begin);
   ExtractAndMatch(options, workspace, pictures, second_chance, &database, &state, &report);
+  FindMarkersOfDive(options, workspace, &state, &report);
   TieTheRest(options, workspace, second_chance, &database, &state, &report);
   const Mapping mapping = MapPictures(plan, database, &state);
   report.stages.insert(report.stages.end(), mapping.seconds.begin(), mapping.seconds.end());
   std::vector<ModelSummary> models = ReadModels(mapping.models, &report);
   ScaleModels(options, pictures, workspace, mapping.fingerprint, &state, &models, &report);
   DensifyModels(options, workspace, mapping.fingerprint, &database, &state, &models, &report);
+  RememberJob(&progress);
   return WriteReport(workspace, models, report);
 }
 

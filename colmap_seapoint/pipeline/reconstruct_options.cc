@@ -5,7 +5,7 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/georeference/scale_measurements.h"
 #include "colmap_seapoint/pictures/read_rig.h"
-#include "colmap_seapoint/pipeline/output_paths.h"
+#include "colmap_seapoint/workspace/output_paths.h"
 
 namespace colmap_seapoint {
 
@@ -36,6 +36,9 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
   table->Add("join_models", &join_models,
              "make one of two models where verified matches between them can be trusted; 0 where "
              "places look so alike that it joins what does not belong together",
+             "ours");
+  table->Add("check_disk", &check_disk,
+             "end before any work where the disk is too small by far; 0 = go on all the same",
              "ours");
   table->Add("rig", &rig, kRigHelp, "paper 4");
   table->Add("mask_path", &reader.mask_path, "the same as --ImageReader.mask_path", "COLMAP");

@@ -28,6 +28,7 @@ struct AutomaticReconstructorOptions {
   std::string matcher = "auto";        // auto, sequential or exhaustive
   bool adjust_principal_point = true;
   bool join_models = true;
+  bool check_disk = true;
   std::string rig;
   ScaleSources scale;
   FrameSelectionOptions frames;

@@ -1,10 +1,13 @@
 #include "colmap_seapoint/pipeline/scale.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <vector>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/georeference/marker_search.h"
 #include "colmap_seapoint/io/cloud/transform_cloud.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/colmap/colmap_rigs.h"
@@ -12,11 +15,12 @@
 #include "colmap_seapoint/io/outputs/replaceable_file.h"
 #include "colmap_seapoint/io/outputs/same_file.h"
 #include "colmap_seapoint/navigation/measured_positions.h"
+#include "colmap_seapoint/pictures/find_markers.h"
 #include "colmap_seapoint/pictures/image_reader.h"
 #include "colmap_seapoint/pictures/read_rig.h"
-#include "colmap_seapoint/pipeline/earlier_outputs.h"
-#include "colmap_seapoint/pipeline/output_paths.h"
 #include "colmap_seapoint/report/scale_report.h"
+#include "colmap_seapoint/workspace/earlier_outputs.h"
+#include "colmap_seapoint/workspace/output_paths.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -39,8 +43,8 @@ void Validate(const ModelScalerOptions& options, const PictureRecords& records) 
   if (!sources.Any() && (sources.DeclinesPositions() ||
                          (!HasGps(records) && !fs::is_directory(options.image_path)))) {
     throw UsageError(
-        "nothing says how large the model is: give --scale_bars_path, --positions_path, --nav or "
-        "--rig_spacing, or the --image_path of pictures with GPS");
+        "nothing says how large the model is: give --scale_bars_path, --positions_path, --nav, "
+        "--marker_size or --rig_spacing, or the --image_path of pictures with GPS");
   }
   if (NamesFolders(options.rig) && !fs::is_directory(options.image_path)) {
     throw UsageError("rig is '" + options.rig + "', it needs image_path: the folder of its two");
@@ -50,6 +54,20 @@ void Validate(const ModelScalerOptions& options, const PictureRecords& records) 
                  fs::path(options.output_path) / fs::path(options.cloud_path).filename())) {
     throw UsageError(
         "cloud_path lies in output_path: the cloud would be lost; name another folder");
+  }
+}
+
+// Coded markers need pictures, or the table of what was found in them.
+void CheckMarkerSource(const ModelScalerOptions& options) {
+  if (FamiliesToFind(options.sources).empty()) return;
+  if (!options.markers_path.empty()) {
+    ReadMarkersCsv(options.markers_path);
+  } else if (options.image_path.empty()) {
+    throw UsageError(
+        "coded markers are to be found: give --image_path, the folder of the pictures, or "
+        "--markers_path, the table of marker_finder");
+  } else if (!fs::is_directory(options.image_path)) {
+    throw Error(options.image_path, "there is no such folder", "check --image_path");
   }
 }
 
@@ -67,10 +85,23 @@ void ClaimOutputs(const ModelScalerOptions& options, OutputFolder* folder) {
                    "choose another --report_path, or remove the file");
 }
 
+// Of every picture of the dive: those of other models tell why a bar is not in this one.
+std::vector<MarkerSighting> SightingsFor(const ModelScalerOptions& options,
+                                         const SparseModel& model, RunReport* report) {
+  const std::vector<MarkerFamily> families = FamiliesToFind(options.sources);
+  if (families.empty()) return {};
+  if (!options.markers_path.empty()) return ReadMarkersCsv(options.markers_path);
+  std::vector<std::string> names;
+  for (const PosedImage& image : model.images) names.push_back(image.name);
+  std::sort(names.begin(), names.end());
+  return FindMarkers(options.image_path, names, families, options.run.num_threads, report);
+}
+
 void DescribeInputs(const ModelScalerOptions& options, RunReport* report) {
   const ScaleSources& sources = options.sources;
-  for (const std::string& path : {sources.scale_bars_path, sources.targets_path,
-                                  sources.positions_path, options.cloud_path, sources.nav_times}) {
+  for (const std::string& path :
+       {sources.scale_bars_path, sources.targets_path, sources.positions_path, options.markers_path,
+        options.cloud_path, sources.nav_times}) {
     if (!path.empty() && path != kNoPositions) report->inputs.push_back(DescribeInput(path, path));
   }
 }
@@ -118,8 +149,8 @@ Estimation Estimate(const ModelScalerOptions& options, const PictureRecords& rec
   const PositionSource positions = FindPositions(sources, records, model);
   Estimation found;
   const bool is_usable = positions.is_there && positions.problem.empty();
-  const bool has_others =
-      !sources.scale_bars_path.empty() || sources.rig_spacing > 0 || sources.HasPositionTable();
+  const bool has_others = !sources.scale_bars_path.empty() || sources.rig_spacing > 0 ||
+                          sources.marker_size > 0 || sources.HasPositionTable();
   if (!is_usable) {
     found.refused = Refusal(sources, positions.is_there ? positions.problem : "there is none");
     if (!sources.nav.empty()) LeaveOut(sources.nav, positions.problem, report);
@@ -133,7 +164,8 @@ Estimation Estimate(const ModelScalerOptions& options, const PictureRecords& rec
   const StereoRig rig = sources.rig_spacing > 0
                             ? ReadRig(options.rig, options.image_path, options.input_path, model)
                             : StereoRig();
-  found.measurements = GatherMeasurements(model, sources, rig, options.run.random_seed, report,
+  found.measurements = GatherMeasurements(model, sources, SightingsFor(options, model, report), rig,
+                                          options.run.random_seed, report,
                                           is_usable ? &positions.measured : nullptr);
   found.estimate = EstimateSimilarity(found.measurements.problem);
   const std::string doubt = is_usable && !has_others ? Doubt(found.estimate) : "";
@@ -178,11 +210,14 @@ void ModelScalerOptions::Bind(OptionTable* table) {
              "cloud in the model's frame (PLY), scaled into output_path; empty = none", "ours");
   sources.Bind(table);
   table->Add("rig", &rig, kRigHelp, "paper 4");
-  table->Add(
-      "image_path", &image_path,
-      "folder of the pictures; for --rig LEFT,RIGHT, for the times of --nav, and for their GPS "
-      "where no other source is given",
-      "COLMAP");
+  table->Add("image_path", &image_path,
+             "folder of the pictures; for coded markers, for --rig LEFT,RIGHT, for the times of "
+             "--nav, and for their GPS where no other source is given",
+             "COLMAP");
+  table->Add("markers_path", &markers_path,
+             "coded markers of the pictures as marker_finder has written them; empty = they are "
+             "looked for in image_path where a scale bar or marker_size needs them",
+             "ours");
   table->Add("report_path", &report_path,
              "CSV to write, one row a measurement with its residual; empty = none", "ours");
   run.Bind(table);
@@ -193,6 +228,7 @@ void ModelScalerOptions::Bind(OptionTable* table) {
 ScaledModel ScaleModel(const ModelScalerOptions& options, const PictureRecords& records) {
   Validate(options, records);
   CheckScaleTables(options.sources);
+  CheckMarkerSource(options);
   OutputFolder folder(options.output_path, "--output_path");
   ClaimOutputs(options, &folder);
   ScaledModel scaled;

@@ -13,12 +13,13 @@
 namespace colmap_seapoint {
 
 struct ModelScalerOptions {
-  std::string input_path;   // COLMAP model, binary or text
-  std::string output_path;  // folder for the scaled model and what tells how it was scaled
-  std::string cloud_path;   // PLY in the model's frame, scaled too; empty = none
-  std::string image_path;   // folder of the pictures; for rig LEFT,RIGHT, and for their EXIF
-  std::string rig;          // "", "none" or "LEFT,RIGHT" (read_rig.h)
-  std::string report_path;  // CSV, a row a measurement with its residual; empty = none
+  std::string input_path;    // COLMAP model, binary or text
+  std::string output_path;   // folder for the scaled model and what tells how it was scaled
+  std::string cloud_path;    // PLY in the model's frame, scaled too; empty = none
+  std::string image_path;    // folder of the pictures; for markers, rig LEFT,RIGHT, and their EXIF
+  std::string markers_path;  // CSV of marker_finder; empty: markers are looked for in image_path
+  std::string rig;           // "", "none" or "LEFT,RIGHT" (read_rig.h)
+  std::string report_path;   // CSV, a row a measurement with its residual; empty = none
   ScaleSources sources;
   RunOptions run;
 

@@ -8,10 +8,13 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/content_hash.h"
 #include "colmap_seapoint/io/files/model_units.h"
 #include "colmap_seapoint/io/files/run_report_json.h"
-#include "colmap_seapoint/pipeline/earlier_outputs.h"
+#include "colmap_seapoint/markers/detect_markers.h"
+#include "colmap_seapoint/pictures/find_markers.h"
+#include "colmap_seapoint/workspace/earlier_outputs.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -39,8 +42,8 @@ std::string Inputs(const ModelScalerOptions& scaler, const PictureRecords& recor
   std::string text = mapper_fingerprint + "," + scaler.rig + "," +
                      std::to_string(scaler.run.random_seed) + "," +
                      OptionsFingerprint(OptionValues(sources));
-  for (const std::string& path :
-       {sources.scale_bars_path, sources.targets_path, sources.positions_path, sources.nav_times}) {
+  for (const std::string& path : {sources.scale_bars_path, sources.targets_path,
+                                  sources.positions_path, sources.nav_times, scaler.markers_path}) {
     if (!path.empty() && path != kNoPositions) text += DescribeInput(path, path).hash + ",";
   }
   std::istringstream logs(sources.nav);
@@ -86,6 +89,36 @@ void to_json(nlohmann::ordered_json& json, const ScaledModel& scaled) {
 void from_json(const nlohmann::ordered_json& json, ScaledModel& scaled) {
   scaled = {json.at("report").get<RunReport>(), json.at("text"), json.at("line"),
             json.at("refused")};
+}
+
+std::vector<MarkerSighting> FindMarkersOnce(const MarkerSearch& search, const Workspace& workspace,
+                                            WorkspaceState* state, RunReport* report) {
+  constexpr char kStage[] = "markers";
+  if (search.families.empty()) {
+    state->Forget(kStage);
+    state->Folder()->Remove(workspace.markers.filename().string());
+    return {};
+  }
+  std::string inputs;
+  for (const MarkerFamily family : search.families) inputs += FamilyText(family) + ",";
+  std::vector<std::string> names;
+  for (const RunReport::Input& picture : search.pictures) {
+    inputs += "\n" + picture.name + " " + picture.hash;
+    if (!picture.hash.empty()) names.push_back(picture.name);
+  }
+  const Stage stage = {kStage, kMarkerVersion, inputs, "The pictures' markers are known already"};
+  const auto part = RunStage<RunReport>(state, stage, [&]() -> StageOutput<RunReport> {
+    RunReport found;
+    {
+      StageTimer timer(&found, kStage);
+      const auto sightings =
+          FindMarkers(workspace.images, names, search.families, search.num_threads, &found);
+      WriteTextFile(workspace.markers, MarkersCsv(sightings));
+    }
+    return {std::move(found), {workspace.markers}};
+  });
+  AddPart(part, report);
+  return ReadMarkersCsv(workspace.markers);
 }
 
 RunReport ScaleAllModels(ModelScalerOptions scaler, const PictureRecords& records,

@@ -234,7 +234,7 @@ void MapWriter::WriteMaps(const std::vector<LeftOutPicture>& left_out, RunReport
   CreateDenseWorkspaceFolders(output_path_, names);
   RemoveStereoConfigs(output_path_);
   const CloudRanges cloud(output_path_ / "fused.ply");
-  Progress progress("Depth maps", static_cast<int64_t>(names.size()));
+  Progress progress("Depth maps", static_cast<int64_t>(names.size()), 0, Work::kMaps);
   std::mutex mutex;
   int64_t num_done = 0;
   ParallelFor(NumViewsAtOnce(), static_cast<int64_t>(names.size()), [&](int64_t index) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/files/csv_table.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -85,14 +86,6 @@ Json SimilarityJson(const Similarity3d& similarity) {
           {"rotation_wxyz", {q.w(), q.x(), q.y(), q.z()}},
           {"translation", VectorJson(similarity.translation)},
           {"what", "x_new = scale * rotation * x_old + translation"}};
-}
-
-// Names with commas and quotes are written as ReadCsvTable reads them.
-std::string Quoted(const std::string& name) {
-  if (name.find_first_of(",\"") == std::string::npos) return name;
-  std::string text = "\"";
-  for (const char c : name) text += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return text + "\"";
 }
 
 }  // namespace
@@ -191,13 +184,13 @@ void WriteScaleCsv(const std::filesystem::path& path, const ScaleMeasurements& m
   std::string text = std::string(kScaleCsvHeader) + "\n";
   for (size_t i = 0; i < estimate.position_residuals.size(); ++i) {
     const Eigen::Vector3d& r = estimate.position_residuals[i];
-    text += "position," + Quoted(measurements.position_names[i]) +
+    text += "position," + CsvField(measurements.position_names[i]) +
             Format(",%d,%.6f,%.6f,%.6f,%.6f,%.6f,,\n", estimate.position_used[i] ? 1 : 0, r.x(),
                    r.y(), r.z(), r.norm(), estimate.position_sigmas[i].maxCoeff());
   }
   for (size_t i = 0; i < estimate.length_residuals.size(); ++i) {
     const LengthMeasurement& length = measurements.problem.lengths[i];
-    text += "length," + Quoted(measurements.length_names[i]) +
+    text += "length," + CsvField(measurements.length_names[i]) +
             Format(",%d,,,,%.6f,%.6f,%.9g,%.6f\n", estimate.length_used[i] ? 1 : 0,
                    estimate.length_residuals[i], estimate.length_sigmas[i], length.in_model,
                    length.metres);

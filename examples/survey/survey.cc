@@ -33,13 +33,30 @@ LandmarkOptions StatueOptions(const SurveyOptions& options) {
           options.relief, NominalGsd(options)};
 }
 
-Surface MakeSurface(const SurveyOptions& options, const SparseModel& model) {
+// Bars about the places below pictures that lie evenly in the survey.
+std::vector<MarkerBoard> PlanBars(const SurveyOptions& options, const SparseModel& model,
+                                  const HeightField& ground) {
+  std::vector<Eigen::Vector2d> places;
+  const auto num_bars = static_cast<size_t>(options.markers);
+  for (size_t k = 0; k < num_bars; ++k) {
+    const PosedImage& image = model.images[(2 * k + 1) * model.images.size() / (2 * num_bars)];
+    places.push_back(image.cam_from_world.OriginInSource().head<2>());
+  }
+  return MakeBars(places,
+                  {static_cast<uint64_t>(options.seed), options.marker_bar, options.marker_size},
+                  ground);
+}
+
+Surface MakeSurface(const SurveyOptions& options, const SparseModel& model,
+                    std::vector<MarkerBoard>* boards) {
   const double lowest = -1.2 * options.relief - 0.05;
   const Rectangle box = SurveyArea(options, model, lowest);
   HeightField ground = MakeHeightField(MakeSeabed(options), box.min_x, box.min_y, box.max_x,
                                        box.max_y, options.num_threads);
   SEAPOINT_CHECK(ground.MinHeight() > lowest);
   Sheet object;
+  *boards = PlanBars(options, model, ground);
+  if (!boards->empty()) ground = WithBoards(ground, *boards);
   if (options.path == SurveyPath::kCircle) ground = WithBoulder(ground, BoulderOptions(options));
   if (options.path == SurveyPath::kStatue) {
     object = MakeStatue(StatueOptions(options), ground.Height(0, 0));
@@ -118,7 +135,7 @@ SurveyTruth MakeSurveyTruth(const SurveyOptions& options) {
   truth.model = PlanSurvey(options);
   truth.max_range = MaxRange(options);
   truth.port = options.port;
-  truth.surface = MakeSurface(options, truth.model);
+  truth.surface = MakeSurface(options, truth.model, &truth.boards);
   truth.gsd = MeasureGsd(truth);
   AddExactPoints(options, &truth);
   return truth;
@@ -127,7 +144,7 @@ SurveyTruth MakeSurveyTruth(const SurveyOptions& options) {
 void RenderSurvey(const SurveyOptions& options, const SurveyTruth& truth,
                   const std::function<void(const PosedImage&, ColorImage&&)>& take) {
   const Seabed seabed = MakeSeabed(options);
-  Renderer renderer(options, truth.model.cameras.at(1), truth.surface, seabed);
+  Renderer renderer(options, truth.model.cameras.at(1), truth.surface, truth.boards, seabed);
   for (const PosedImage& image : truth.model.images) {
     take(image, renderer.Render(image, options.num_threads));
   }

@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <vector>
 
 #include "colmap_seapoint/base/image.h"
 #include "colmap_seapoint/base/sparse_model.h"
 #include "examples/survey/paths/survey_options.h"
+#include "examples/survey/scene/boards.h"
 #include "examples/survey/scene/surface.h"
 
 namespace colmap_seapoint {
@@ -16,7 +18,8 @@ struct SurveyTruth {
   SparseModel model;  // exact cameras; some exact points with the pictures that see them
   Surface surface;    // exact surface, in the model's frame
   PortOptions port;   // what the pictures were taken through; the model's camera is as in water
-  double gsd = 0;     // metres a pixel: mean over all that the pictures show (GsdAt)
+  std::vector<MarkerBoard> boards;  // with coded markers; a part of the surface too
+  double gsd = 0;                   // metres a pixel: mean over all that the pictures show (GsdAt)
   double max_range = std::numeric_limits<double>::infinity();  // metres; farther counts as unseen
 };
 
@@ -33,7 +36,8 @@ void RenderSurvey(const SurveyOptions& options, const SurveyTruth& truth,
 //   truth/surface.bin       heights, float32 little-endian, row by row from min y
 //   truth/surface.json      first node, number of nodes, cell size; a wall's turn
 //   truth/object.bin        x, y, z of the object's nodes, float32, row by row, if there is one
-//   truth/survey.json       options and gsd
+//   truth/survey.json       options and gsd; coded markers, if there are any
+//   truth/bars.csv          exact lengths between these, as --scale_bars_path takes them
 void WriteSurveyTruth(const std::filesystem::path& dir, const SurveyOptions& options,
                       const SurveyTruth& truth);
 

@@ -52,6 +52,11 @@ nlohmann::ordered_json OptionsJson(const SurveyOptions& o) {
   if (o.path == SurveyPath::kSwim) json["pitch"] = o.pitch_deg;
   if (o.roll_deg != 0) json["roll"] = o.roll_deg;
   if (o.max_range > 0) json["max_range"] = o.max_range;
+  if (o.markers > 0) {
+    json["markers"] = o.markers;
+    json["marker_size"] = o.marker_size;
+    json["marker_bar"] = o.marker_bar;
+  }
   if (o.camera_model != CameraModel::kOpenCV) json["camera_model"] = CameraModelName(o);
   if (o.port.kind != PortKind::kNone) json["port"] = PortKindName(o.port.kind);
   return json;
@@ -89,6 +94,42 @@ std::string ParamsText(const SparseModel& model) {
     char number[32];
     std::snprintf(number, sizeof(number), "%s%.10g", text.empty() ? "" : ",", param);
     text += number;
+  }
+  return text;
+}
+
+nlohmann::ordered_json MarkersJson(const std::vector<MarkerBoard>& boards) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const MarkerBoard& board : boards) {
+    json.push_back({{"marker", MarkerText(board.name)},
+                    {"centre", {board.centre.x(), board.centre.y(), board.centre.z()}},
+                    {"turn", board.turn},
+                    {"size", board.size}});
+  }
+  return json;
+}
+
+std::vector<MarkerBoard> ReadMarkers(const nlohmann::ordered_json& json) {
+  std::vector<MarkerBoard> boards;
+  for (const auto& item : json) {
+    const auto name = ParseMarkerName(item.at("marker").get<std::string>()).name;
+    const auto centre = item.at("centre").get<std::array<double, 3>>();
+    if (name) {
+      boards.push_back(
+          {*name, {centre[0], centre[1], centre[2]}, item.at("turn"), item.at("size")});
+    }
+  }
+  return boards;
+}
+
+// Two boards each.
+std::string BarsCsv(const std::vector<MarkerBoard>& boards) {
+  std::string text = "name1,name2,length_m,sigma_m\n";
+  for (size_t k = 0; k + 1 < boards.size(); k += 2) {
+    char length[64];
+    std::snprintf(length, sizeof(length), ",%.6f,0.001\n",
+                  (boards[k + 1].centre - boards[k].centre).norm());
+    text += MarkerText(boards[k].name) + "," + MarkerText(boards[k + 1].name) + length;
   }
   return text;
 }
@@ -200,6 +241,10 @@ void WriteSurveyTruth(const std::filesystem::path& dir, const SurveyOptions& opt
                                         {"camera_model", CameraModelName(options)},
                                         {"camera_params", ParamsText(truth.model)},
                                         {"options", OptionsJson(options)}};
+  if (!truth.boards.empty()) {
+    survey_json["markers"] = MarkersJson(truth.boards);
+    WriteTextFile(truth_dir / "bars.csv", BarsCsv(truth.boards));
+  }
   if (std::isfinite(truth.max_range)) survey_json["max_range"] = truth.max_range;
   if (truth.port.kind != PortKind::kNone) survey_json["port"] = PortJson(truth.port);
   WriteTextFile(truth_dir / "survey.json", survey_json.dump(2) + "\n");
@@ -223,6 +268,13 @@ SurveyTruth ReadSurveyTruth(const std::filesystem::path& dir) {
   }
   truth.model = ReadSparseModel(truth_dir / "sparse");
   truth.surface = ReadSurface(truth_dir);
+  if (json.contains("markers")) {
+    try {
+      truth.boards = ReadMarkers(json["markers"]);
+    } catch (const nlohmann::json::exception& e) {
+      throw Error((truth_dir / "survey.json").string(), e.what(), kRemedy);
+    }
+  }
   return truth;
 }
 

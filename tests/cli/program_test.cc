@@ -133,6 +133,7 @@ TEST_F(Program, HelpIsAResult) {
   EXPECT_EQ(Output({"-h"}), help);
   EXPECT_EQ(Output({"--help"}), help);
   EXPECT_EQ(Output({"help", "--format", "text"}), help);
+  EXPECT_EQ(Output({"help", "cloud_comparer"}), Output({"cloud_comparer", "-h"}));
   EXPECT_NE(Output({"help", "--format", "man"}).find("\n.TH COLMAP_SEAPOINT 1"), std::string::npos);
   EXPECT_NE(Output({"help", "--format", "bash"}).find("\n_colmap_seapoint() {"), std::string::npos);
   EXPECT_EQ(Output({"version"}), "colmap_seapoint " + Version() + "\n");

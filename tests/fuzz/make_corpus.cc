@@ -8,7 +8,7 @@
 #include "colmap_seapoint/io/files/model_units.h"
 #include "colmap_seapoint/io/files/run_report_json.h"
 #include "colmap_seapoint/io/image/image_file.h"
-#include "colmap_seapoint/pipeline/stage_runner.h"
+#include "colmap_seapoint/workspace/stage_runner.h"
 #include "tests/fuzz/fuzz_files.h"
 
 using namespace colmap_seapoint;

@@ -54,12 +54,13 @@ class Measurements : public testing::Test {
   }
 
   ScaleMeasurements Gather(const StereoRig& rig = {}) {
-    return GatherMeasurements(model_, sources_, rig, 5, &report_);
+    return GatherMeasurements(model_, sources_, sightings_, rig, 5, &report_);
   }
 
   TempDir dir_;
   SparseModel model_;
   ScaleSources sources_;
+  std::vector<MarkerSighting> sightings_;
   RunReport report_;
 };
 

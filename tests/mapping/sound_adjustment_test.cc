@@ -64,7 +64,8 @@ TEST(SoundAdjustmentTest, WhatIsNotSoundNamesItsFault) {
   LensLimits limits;
   limits.max_focal_ratio = 1 + 1e-9;
   EXPECT_EQ(AdjustSoundly(SurveyOfAspect(1.004), limits).fault, "the focal length moved too far");
-  EXPECT_EQ(AdjustSoundly(SparseModel(), {}).fault, "too few pictures");
+  EXPECT_EQ(AdjustSoundly(SparseModel(), {}).fault,
+            "it takes three pictures at least to tell the lens");
 }
 
 TEST(SoundAdjustmentTest, TheSameForAnyNumberOfThreads) {

@@ -48,7 +48,7 @@ class MatchPairsTest : public testing::Test {
 
   void Match(const std::vector<ImagePair>& pairs, double min_overlap_share = 0, int threads = 1) {
     report_ = RunReport();
-    MatchPairs(pairs, options_, min_overlap_share, threads, &database_, &report_);
+    MatchPairs(pairs, options_, asked_, min_overlap_share, threads, &database_, &report_);
   }
 
   TempDir dir_;
@@ -59,6 +59,7 @@ class MatchPairsTest : public testing::Test {
   std::vector<Eigen::Vector3d> points_;
   std::vector<Descriptor> descriptors_;
   SeaPointMatchingOptions options_;
+  std::string asked_ = "as at first";
   RunReport report_;
 };
 
@@ -89,6 +90,24 @@ TEST_F(MatchPairsTest, RowsThatAreThereStay) {
   EXPECT_EQ(ReadMatches(database_, {a, b}).size(), 2u);
   EXPECT_GT(ReadMatches(database_, {b, c}).size(), 50u);
   EXPECT_EQ(report_.pairs, 2);
+}
+
+TEST_F(MatchPairsTest, PairsThatWereMatchedWithOtherOptionsAreMatchedAgain) {
+  const uint32_t a = AddPicture("a", 0), b = AddPicture("b", 0.2), c = AddPicture("c", 0.4);
+  WriteMatches(&database_, a, c, {{0, 1}, {1, 0}}, MakeGeometry({{0, 1}}));  // somebody else's
+  Match({{a, b}, {a, c}});
+  Match({{a, b}});
+  const size_t num_verified = ReadTwoViewGeometry(database_, {a, b}).inliers.size();
+  ASSERT_GT(num_verified, 0u);
+  options_.verification.min_num_inliers = static_cast<int>(num_verified) + 1;
+  Match({{a, b}});  // asked for the same
+  EXPECT_FALSE(ReadVerifiedPairs(database_).empty());
+  asked_ = "more inliers";
+  Match({{a, b}, {a, c}});
+  EXPECT_TRUE(ReadTwoViewGeometry(database_, {a, b}).inliers.empty());
+  EXPECT_EQ(ReadMatches(database_, {a, c}).size(), 2u);
+  EXPECT_EQ(MatchingOf(database_, {a, b}), asked_);
+  EXPECT_EQ(MatchingOf(database_, {a, c}), "");
 }
 
 TEST_F(MatchPairsTest, ThreadsChangeNothing) {

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "colmap_seapoint/io/colmap/colmap_model.h"
-#include "colmap_seapoint/pipeline/stage_runner.h"
+#include "colmap_seapoint/workspace/stage_runner.h"
 #include "tests/cli/database_tables.h"
 #include "tests/expect_error.h"
 #include "tests/pipeline/strip_survey.h"

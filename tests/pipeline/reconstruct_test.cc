@@ -6,7 +6,7 @@
 #include <set>
 
 #include "colmap_seapoint/io/image/image_file.h"
-#include "colmap_seapoint/pipeline/stage_runner.h"
+#include "colmap_seapoint/workspace/stage_runner.h"
 #include "tests/cli/database_tables.h"
 #include "tests/expect_error.h"
 #include "tests/pipeline/strip_survey.h"

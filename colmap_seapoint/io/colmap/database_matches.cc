@@ -173,6 +173,14 @@ std::vector<ImagePair> ReadPairs(const ColmapDatabase& database, const std::stri
   return pairs;
 }
 
+constexpr char kMatchingTable[] = "seapoint_matching";
+
+std::vector<const char*> TablesOfPairs(const ColmapDatabase& database) {
+  std::vector<const char*> tables = {"matches", "two_view_geometries"};
+  if (HasColumn(database.Connection(), kMatchingTable, "pair_id")) tables.push_back(kMatchingTable);
+  return tables;
+}
+
 }  // namespace
 
 bool HasMatches(const ColmapDatabase& database, ImagePair pair) {
@@ -238,8 +246,29 @@ std::vector<ImagePair> ReadTriedPairs(const ColmapDatabase& database) {
   return ReadPairs(database, "(rows <> 0 OR config <> 0)");
 }
 
+std::string MatchingOf(const ColmapDatabase& database, ImagePair pair) {
+  const SqlConnection& db = database.Connection();
+  if (!HasColumn(db, kMatchingTable, "fingerprint")) return "";
+  SqlStatement row(db, "SELECT fingerprint FROM seapoint_matching WHERE pair_id = ?");
+  row.Bind(PairId(pair));
+  return row.Step() ? row[0].Text() : "";
+}
+
+void NoteMatching(ColmapDatabase* database, ImagePair pair, const std::string& fingerprint) {
+  const SqlConnection& db = database->Connection();
+  if (!HasColumn(db, kMatchingTable, "fingerprint")) {
+    RunSql(db,
+           "CREATE TABLE IF NOT EXISTS seapoint_matching(pair_id INTEGER PRIMARY KEY NOT NULL, "
+           "fingerprint TEXT NOT NULL)");
+  }
+  SqlStatement(db, "INSERT OR REPLACE INTO seapoint_matching(pair_id, fingerprint) VALUES(?, ?)")
+      .Bind(PairId(pair))
+      .Bind(fingerprint)
+      .Run();
+}
+
 void DeleteMatchesOfImage(ColmapDatabase* database, uint32_t image_id) {
-  for (const char* table : {"matches", "two_view_geometries"}) {
+  for (const char* table : TablesOfPairs(*database)) {
     SqlStatement(database->Connection(), std::string("DELETE FROM ") + table +
                                              " WHERE pair_id / ?2 = ?1 OR pair_id % ?2 = ?1")
         .Bind(static_cast<int64_t>(image_id))
@@ -249,7 +278,7 @@ void DeleteMatchesOfImage(ColmapDatabase* database, uint32_t image_id) {
 }
 
 void DeleteMatchesOfPair(ColmapDatabase* database, ImagePair pair) {
-  for (const char* table : {"matches", "two_view_geometries"}) {
+  for (const char* table : TablesOfPairs(*database)) {
     SqlStatement(database->Connection(), std::string("DELETE FROM ") + table + " WHERE pair_id = ?")
         .Bind(PairId(pair))
         .Run();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,12 @@ bool HasMatches(const ColmapDatabase& database, ImagePair pair);
 // swapped. Unset matrices are NULL. Replaces earlier rows of the pair.
 void WriteMatches(ColmapDatabase* database, uint32_t image_id1, uint32_t image_id2,
                   const FeatureMatches& raw, const TwoViewGeometry& geometry);
+
+// What the pair was matched with, as NoteMatching() was told; "" for a pair that others have
+// matched, or a version of ours that noted nothing.
+std::string MatchingOf(const ColmapDatabase& database, ImagePair pair);
+// In a table of our own; to be called with the pair's WriteMatches().
+void NoteMatching(ColmapDatabase* database, ImagePair pair, const std::string& fingerprint);
 
 // Tables `matches` and `two_view_geometries` as stored: indices relate to (pair.first,
 // pair.second). Empty when there is no row. Indices that no keypoint has are an Error. Matrices and

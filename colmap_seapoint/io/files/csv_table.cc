@@ -43,6 +43,13 @@ std::string Lower(std::string text) {
 
 }  // namespace
 
+std::string CsvField(const std::string& text) {
+  if (text.find_first_of(",\"") == std::string::npos) return text;
+  std::string field = "\"";
+  for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return field + "\"";
+}
+
 bool ParseCsvNumber(std::string text, double* value) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.erase(0, 1);
   const auto parsed = std::from_chars(text.data(), text.data() + text.size(), *value);

@@ -24,6 +24,9 @@ struct CsvTable {
 // file cannot be read; `option` is the one to check.
 CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& option);
 
+// The text as a field of such a table: in quotes where it holds a comma or a quote.
+std::string CsvField(const std::string& text);
+
 // A finite number, with a point; false for anything else.
 bool ParseCsvNumber(std::string text, double* value);
 

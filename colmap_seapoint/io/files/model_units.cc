@@ -29,7 +29,8 @@ ModelUnits FromJson(const Json& json) {
         GeoPosition{origin.at("latitude_deg"), origin.at("longitude_deg"), origin.at("altitude_m")};
   }
   for (int i = 0; i < 3; ++i) units.offset[i] = json.at("offset").at(static_cast<size_t>(i));
-  units.scale_sigma_relative = json.value("scale_sigma_relative", 0.0);
+  const auto sigma = json.find("scale_sigma_relative");
+  if (sigma != json.end() && sigma->is_number()) units.scale_sigma_relative = *sigma;
   return units;
 }
 
@@ -59,7 +60,7 @@ void WriteModelUnits(const std::filesystem::path& dir, const ModelUnits& units) 
   }
   json["offset"] = {units.offset.x(), units.offset.y(), units.offset.z()};
   json["what"] = "coordinates of the files here + offset = coordinates of the frame";
-  json["scale_sigma_relative"] = units.scale_sigma_relative;
+  json["scale_sigma_relative"] = units.is_metric ? Json(units.scale_sigma_relative) : Json();
   WriteTextFile(dir / kUnitsFile, json.dump(2) + "\n");
 }
 

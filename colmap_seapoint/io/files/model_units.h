@@ -21,7 +21,8 @@ struct ModelUnits {
   // Added to the coordinates of the files, these are those of `frame`: kept apart, since a cloud's
   // floats have 7 digits only.
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
-  double scale_sigma_relative = 0;  // standard deviation of the scale over the scale
+  // Standard deviation of the scale over the scale; in the file null where units are arbitrary.
+  double scale_sigma_relative = 0;
 };
 
 inline constexpr char kUnitsFile[] = "units.json";

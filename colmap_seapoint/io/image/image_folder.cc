@@ -37,22 +37,57 @@ void AddFile(const std::filesystem::path& path, const std::string& name, FolderL
   names.push_back(name);
 }
 
-// Links to files are followed, links to folders are not.
-FolderListing FindAll(const std::filesystem::path& folder) {
-  FolderListing listing;
-  std::filesystem::recursive_directory_iterator entry(folder), end;
-  for (; entry != end; ++entry) {
-    const std::filesystem::path& path = entry->path();
-    std::error_code ignored;
-    if (path.filename().string().front() == '.') {
-      if (entry->is_directory(ignored)) entry.disable_recursion_pending();
-      continue;
-    }
-    if (!entry->is_regular_file(ignored)) continue;
-    AddFile(path, path.lexically_relative(folder).generic_string(), &listing);
-  }
-  return listing;
+bool IsWithin(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  const auto relative = path.lexically_relative(folder);
+  return !relative.empty() && *relative.begin() != "..";
 }
+
+// Walks a folder and those below it, links to folders included: each is walked once, so that links
+// that go in circles, or to what is read anyway, do no harm.
+class FolderWalk {
+ public:
+  explicit FolderWalk(const std::filesystem::path& root) : root_(root) {
+    walked_.push_back(std::filesystem::canonical(root));
+    Walk(root);
+  }
+
+  const FolderListing& Listing() const { return listing_; }
+
+ private:
+  // In the order of the names, so that of two links to one folder it is always the same that
+  // counts.
+  void Walk(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::directory_entry> entries(
+        std::filesystem::directory_iterator(folder), {});
+    std::sort(entries.begin(), entries.end());
+    for (const auto& entry : entries) {
+      const std::filesystem::path& path = entry.path();
+      std::error_code ignored;
+      if (path.filename().string().front() == '.') continue;
+      if (entry.is_directory(ignored)) {
+        if (!entry.is_symlink(ignored) || IsNew(path)) Walk(path);
+      } else if (entry.is_regular_file(ignored)) {
+        AddFile(path, path.lexically_relative(root_).generic_string(), &listing_);
+      }
+    }
+  }
+
+  // False for a link to what is walked, or to what holds it.
+  bool IsNew(const std::filesystem::path& link) {
+    std::error_code error;
+    const auto target = std::filesystem::canonical(link, error);
+    if (error) return false;
+    for (const auto& folder : walked_) {
+      if (IsWithin(target, folder) || IsWithin(folder, target)) return false;
+    }
+    walked_.push_back(target);
+    return true;
+  }
+
+  std::filesystem::path root_;
+  std::vector<std::filesystem::path> walked_;
+  FolderListing listing_;
+};
 
 // A shot is taken once: as the picture that needs no decoded copy, else as the first of its names.
 void SetTwinsAside(FolderListing* listing) {
@@ -107,7 +142,7 @@ FolderListing ListFolder(const std::filesystem::path& folder) {
   }
   FolderListing listing;
   try {
-    listing = FindAll(folder);
+    listing = FolderWalk(folder).Listing();
   } catch (const std::filesystem::filesystem_error& failure) {
     throw Error(failure.path1().empty() ? folder.string() : failure.path1().string(),
                 "cannot be read (" + failure.code().message() + ")",

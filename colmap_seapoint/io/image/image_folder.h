@@ -28,9 +28,9 @@ struct FolderListing {
   std::vector<std::string> others;  // kOther, and what cannot be copied under its name
 };
 
-// Of the folder and all below it; links to folders are not followed, since they may go in circles.
-// Pictures with names that IsSafeImageName refuses are among the pictures. Throws Error when there
-// is no such folder, or it cannot be read.
+// Of the folder and all below it. Links to folders are followed, each folder once: none where they
+// go in circles, or to what is listed anyway. Pictures with names that IsSafeImageName refuses are
+// among the pictures. Throws Error when there is no such folder, or it cannot be read.
 FolderListing ListFolder(const std::filesystem::path& folder);
 
 }  // namespace colmap_seapoint

@@ -8,7 +8,7 @@
 #include "colmap_seapoint/io/files/run_report.h"
 #include "colmap_seapoint/io/image/image_folder.h"
 #include "colmap_seapoint/io/outputs/output_folder.h"
-#include "colmap_seapoint/pipeline/stage_runner.h"
+#include "colmap_seapoint/workspace/stage_runner.h"
 
 namespace colmap_seapoint {
 

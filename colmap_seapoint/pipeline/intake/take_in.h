@@ -4,8 +4,8 @@
 
 #include "colmap_seapoint/frames/frame_options.h"
 #include "colmap_seapoint/io/files/run_report.h"
-#include "colmap_seapoint/pipeline/stage_runner.h"
-#include "colmap_seapoint/pipeline/workspace.h"
+#include "colmap_seapoint/workspace/stage_runner.h"
+#include "colmap_seapoint/workspace/workspace.h"
 
 namespace colmap_seapoint {
 

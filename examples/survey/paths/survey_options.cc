@@ -106,6 +106,9 @@ std::string CheckSurveyOptions(const SurveyOptions& o) {
   range("marine_snow", o.marine_snow, 0, 1);
   range("noise", o.noise, 0, 10);
   range("jitter", o.jitter, 0, 3);
+  range("markers", o.markers, 0, IsLawnMower(o.path) || o.path == SurveyPath::kSwim ? 200 : 0);
+  range("marker_size", o.marker_size, 0.01, 1);
+  range("marker_bar", o.marker_bar, 2 * o.marker_size, 20);
   if (o.image_format != "jpg" && o.image_format != "png") {
     problem << "--image_format is " << o.image_format << ", must be jpg or png. ";
   }

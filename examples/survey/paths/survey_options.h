@@ -36,12 +36,15 @@ struct SurveyOptions {
   CameraModel camera_model = CameraModel::kOpenCV;  // or kOpenCVFisheye
   double field_of_view_deg = 60;                    // horizontal, under water
   PortOptions port;                                 // between camera and water
-  double relief = 1;       // factor on all heights of the seabed; 0 = a plane
-  double turbidity = 0.3;  // 0 clear ... 1 murky
-  double caustics = 0;     // 0 none ... 1 strong sunlight through waves
-  double marine_snow = 0;  // 0 none ... 1 heavy
-  double noise = 1;        // factor on the sensor's noise
-  double jitter = 1;       // factor on the vehicle's unsteadiness
+  double relief = 1;         // factor on all heights of the seabed; 0 = a plane
+  double turbidity = 0.3;    // 0 clear ... 1 murky
+  double caustics = 0;       // 0 none ... 1 strong sunlight through waves
+  double marine_snow = 0;    // 0 none ... 1 heavy
+  double noise = 1;          // factor on the sensor's noise
+  double jitter = 1;         // factor on the vehicle's unsteadiness
+  int markers = 0;           // scale bars of two coded markers on the seabed
+  double marker_size = 0.1;  // side of their black squares, metres
+  double marker_bar = 1;     // metres between the centres of a bar, on the map
   std::string image_format = "jpg";
   int num_threads = -1;
 };

@@ -15,7 +15,8 @@ constexpr size_t kMaxAlbedoBytes = size_t{768} << 20;
 
 // Two strobes fore and aft of the camera, aimed down; metres in the camera frame.
 const Eigen::Vector3d kStrobes[] = {{0.12, -0.55, -0.05}, {-0.12, 0.55, -0.05}};
-constexpr float kAmbient = 0.35f;  // of the light at the planned altitude
+constexpr float kBlackPrint = 0.04f, kWhitePrint = 0.75f;  // albedo of the boards
+constexpr float kAmbient = 0.35f;                          // of the light at the planned altitude
 
 AlbedoMap GroundColours(const Surface& surface, const Seabed& seabed) {
   const GridSpec& grid = surface.Ground().Grid();
@@ -68,10 +69,11 @@ void ChooseExposure(FloatImage* linear) {
 }  // namespace
 
 Renderer::Renderer(const SurveyOptions& options, const Camera& camera, const Surface& surface,
-                   const Seabed& seabed)
+                   const std::vector<MarkerBoard>& boards, const Seabed& seabed)
     : options_(options),
       camera_(options.port, camera),
       surface_(&surface),
+      boards_(&boards),
       ground_colours_(GroundColours(surface, seabed)),
       object_colours_(ObjectColours(surface.Object(), seabed, options.num_threads)),
       lens_(camera_),
@@ -160,6 +162,14 @@ Eigen::Array2i Renderer::SamplesOf(const View& view, int x, int y, const Surface
   return samples;
 }
 
+Eigen::Array3f Renderer::GroundColour(const Eigen::Vector2d& place) const {
+  for (const MarkerBoard& board : *boards_) {
+    const auto shade = board.ShadeAt(place.x(), place.y());
+    if (shade) return Eigen::Array3f::Constant(kBlackPrint + *shade * (kWhitePrint - kBlackPrint));
+  }
+  return ColourAt(ground_colours_, place.x(), place.y());
+}
+
 Eigen::Array3f Renderer::ObjectColour(const Eigen::Vector2d& place) const {
   const Eigen::Vector2d texture = place.array() + kObjectTexture;
   const Eigen::Array3f here = ColourAt(*object_colours_, texture.x(), texture.y());
@@ -190,7 +200,7 @@ Eigen::Array3f Renderer::MeanAlbedo(const View& view, int x, int y, const Surfac
     } else if (cam_ray) {
       place = GroundPlace(view, *cam_ray, point, normal);
     }
-    sum += is_object ? ObjectColour(place) : ColourAt(ground_colours_, place.x(), place.y());
+    sum += is_object ? ObjectColour(place) : GroundColour(place);
   }
   return 1.0f / static_cast<float>(samples.prod()) * sum;
 }

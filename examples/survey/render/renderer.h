@@ -2,12 +2,14 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "colmap_seapoint/base/image.h"
 #include "colmap_seapoint/base/sparse_model.h"
 #include "examples/survey/paths/survey_path.h"
 #include "examples/survey/render/lens_table.h"
 #include "examples/survey/render/water.h"
+#include "examples/survey/scene/boards.h"
 #include "examples/survey/scene/seabed.h"
 #include "examples/survey/scene/surface.h"
 
@@ -15,9 +17,9 @@ namespace colmap_seapoint {
 
 class Renderer {
  public:
-  // Keeps references: surface and seabed must outlive the renderer.
+  // Keeps references: surface, boards and seabed must outlive the renderer.
   Renderer(const SurveyOptions& options, const Camera& camera, const Surface& surface,
-           const Seabed& seabed);
+           const std::vector<MarkerBoard>& boards, const Seabed& seabed);
 
   // The same bytes for any number of threads.
   ColorImage Render(const PosedImage& image, int num_threads);
@@ -31,6 +33,7 @@ class Renderer {
   };
   View Prepare(const PosedImage& image, int num_threads);
   Eigen::Array3f PixelLight(const View& view, int x, int y) const;
+  Eigen::Array3f GroundColour(const Eigen::Vector2d& place) const;  // metres, the ground's frame
   Eigen::Array3f ObjectColour(const Eigen::Vector2d& place) const;  // metres on the sheet
   Eigen::Array3f MeanAlbedo(const View& view, int x, int y, const SurfaceHit& hit) const;
   Eigen::Vector2d GroundPlace(const View& view, const WaterRay& cam_ray,
@@ -42,6 +45,7 @@ class Renderer {
   const SurveyOptions options_;
   const PortCamera camera_;
   const Surface* surface_;
+  const std::vector<MarkerBoard>* boards_;
   AlbedoMap ground_colours_;
   std::unique_ptr<AlbedoMap> object_colours_;
   LensTable lens_;

@@ -95,6 +95,24 @@ TEST(ListImages, SortedBelowAndWithoutHidden) {
             (std::vector<std::string>{"B.webp", "a.Jp2", "b/1.png", "b/c/2.tiff", "z.JPG"}));
 }
 
+TEST(ListImages, FollowsLinksToFoldersOnce) {
+  namespace fs = std::filesystem;
+  const TempDir dir, other;
+  fs::create_directories(dir / "dive/a");
+  fs::create_directories(other / "deep");
+  WriteBytes(dir / "dive/a/1.png", "x");
+  WriteBytes(other / "2.png", "x");
+  WriteBytes(other / "deep/3.png", "x");
+  fs::create_directory_symlink(other.Path(), dir / "dive/linked");
+  fs::create_directory_symlink(other / "deep", dir / "dive/twice");  // read already
+  fs::create_directory_symlink(dir / "dive/a", dir / "dive/b");      // inside
+  fs::create_directory_symlink("..", dir / "dive/a/up");             // in a circle
+  fs::create_directory_symlink(dir.Path(), other / "deep/back");     // in a large one
+  fs::create_directory_symlink(dir / "gone", dir / "dive/broken");
+  EXPECT_EQ(ListImages(dir / "dive"),
+            (std::vector<std::string>{"a/1.png", "linked/2.png", "linked/deep/3.png"}));
+}
+
 TEST(ListImages, Errors) {
   const TempDir dir;
   EXPECT_ERROR(ListImages(dir / "missing"), "there is no such folder");

@@ -1,0 +1,109 @@
+#include "colmap_seapoint/estimate/needs.h"
+
+#include <sys/statvfs.h>
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+
+#include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/system/memory_limit.h"
+
+namespace colmap_seapoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Bytes.
+constexpr double kDatabaseOfPicture = 0.5e6;  // its copies for the mapper come and go beside it
+constexpr double kDatabases = 2.5;
+constexpr double kModelsOfPicture = 0.4e6;
+constexpr double kCloudPoint = 43;
+constexpr double kMapPixel = 20;  // depth, normal, undistorted picture
+constexpr double kMemoryOfProgram = 180e6;
+constexpr double kMemoryOfPicture = 1.8e6;  // of the model, while it is adjusted
+constexpr double kMostPicturesInMemory = 1000;
+constexpr double kMemoryOfMegapixel = 30e6;  // of pictures that are worked on
+
+constexpr double kSamplesOfPicture = 0.75e6;
+constexpr double kNewSamples = 0.5;  // of a picture's, that are not known from others
+constexpr double kLeastShare = 0.3;  // that a job took of what is expected
+
+}  // namespace
+
+Needs ExpectedNeeds(const JobSize& size) {
+  const auto n = static_cast<double>(size.num_pictures);
+  const double pixels = 1e6 * size.megapixels / std::max(n, 1.0);
+  const double samples =
+      size.step > 0 ? pixels / (size.step * size.step) : std::min(pixels, kSamplesOfPicture);
+  const double maps = size.writes_maps ? kMapPixel * pixels : 0;
+  Needs needs;
+  needs.disk_bytes = static_cast<uint64_t>(n * (kDatabases * kDatabaseOfPicture + kModelsOfPicture +
+                                                kNewSamples * samples * kCloudPoint + maps));
+  needs.memory_bytes = static_cast<uint64_t>(kMemoryOfProgram +
+                                             kMemoryOfPicture * std::min(n, kMostPicturesInMemory) +
+                                             kMemoryOfMegapixel * 1e-6 * pixels);
+  return needs;
+}
+
+uint64_t FreeDiskBytes(const fs::path& path) {
+  std::error_code error;
+  fs::path there = fs::absolute(path, error);
+  while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
+  struct statvfs disk {};
+  if (statvfs(there.c_str(), &disk) != 0) return 0;
+  return static_cast<uint64_t>(disk.f_bavail) * disk.f_frsize;
+}
+
+uint64_t FolderBytes(const fs::path& path) {
+  uint64_t bytes = 0;
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(path, error), end; !error && entry != end;
+       entry.increment(error)) {
+    std::error_code of_file;
+    const auto size = entry->is_regular_file(of_file) ? entry->file_size(of_file) : 0;
+    if (!of_file) bytes += size;
+  }
+  return bytes;
+}
+
+std::string NeedsText(const JobSize& size, const Needs& needs, const Supply& supply) {
+  std::string text = std::to_string(size.num_pictures) +
+                     (size.num_pictures == 1 ? " picture, " : " pictures, ") +
+                     std::to_string(std::llround(std::ceil(size.megapixels))) +
+                     " megapixels; disk: up to " + BytesText(needs.disk_bytes);
+  if (supply.disk_bytes > 0) text += " of " + BytesText(supply.disk_bytes) + " free";
+  text += "; memory: about " + BytesText(needs.memory_bytes);
+  if (supply.memory_bytes > 0) text += " of " + BytesText(supply.memory_bytes);
+  return text;
+}
+
+std::string TimesText(const OfWork<WorkCost>& costs, const OfWork<bool>& done_before,
+                      double seconds_left) {
+  std::string stages;
+  const auto add = [&](const std::string& name, std::initializer_list<Work> works) {
+    double seconds = 0;
+    for (const Work work : works) {
+      if (!done_before[work]) {
+        seconds += static_cast<double>(costs[work].count) * costs[work].seconds_each;
+      }
+    }
+    if (seconds > 0) stages += (stages.empty() ? "" : ", ") + name + " " + DurationText(seconds);
+  };
+  add("SeaPoints", {Work::kPictures});
+  add("matching", {Work::kLookAlikes, Work::kPairs});
+  add("mapping", {Work::kRegistration, Work::kRefinement});
+  add("cloud", {Work::kDensification, Work::kMaps});
+  return "About " + DurationText(seconds_left) + " on this machine" +
+         (stages.empty() ? "" : ": " + stages);
+}
+
+DiskVerdict JudgeDisk(const Needs& needs, const Supply& supply) {
+  if (supply.disk_bytes == 0) return DiskVerdict::kEnough;
+  const auto there = static_cast<double>(supply.disk_bytes + supply.workspace_bytes);
+  const auto needed = static_cast<double>(needs.disk_bytes);
+  if (there < kLeastShare * needed) return DiskVerdict::kTooSmall;
+  return there < needed ? DiskVerdict::kMayBeFilled : DiskVerdict::kEnough;
+}
+
+}  // namespace colmap_seapoint
