@@ -18,9 +18,9 @@ constexpr size_t kNumNearest = 3;
 // Water straightens it: behind a flat port the polynomial of OPENCV holds it, behind a dome it
 // stays a fisheye.
 constexpr double kGoProWide = 437.0 / 960;
-// GoPro, linear and narrow: 19 and 27 mm, as the camera's own menu has them for its digital lenses
-// from HERO8 on, of the 36 mm of film.
-constexpr double kGoProLinear = 19.0 / 36, kGoProNarrow = 27.0 / 36;
+// GoPro, linear: 19 mm, as the camera's own menu has it for its digital lenses from HERO8 on, of the
+// 36 mm of film.
+constexpr double kGoProLinear = 19.0 / 36;
 // Olympus Tough TG-1 to TG-7: 4.5 mm at the wide end, 25 mm by the maker's data sheet, in pictures
 // of 4 to 3: 25 of the 34.6 mm that are as long a side to the same diagonal.
 constexpr double kToughWide = 25.0 / 34.6;
@@ -40,8 +40,6 @@ constexpr CameraPreset kPresets[] = {
      "the same behind a dome"},
     {"gopro12_linear_flatport", Port::kFlat, CameraModel::kOpenCV, kGoProLinear, false,
      "gopro_linear_flatport by another name"},
-    {"gopro_narrow_flatport", Port::kFlat, CameraModel::kOpenCV, kGoProNarrow, false,
-     "GoPro HERO8 and later, narrow lens (27 mm)"},
     {"tg6_flatport", Port::kFlat, CameraModel::kOpenCV, kToughWide, true,
      "Olympus/OM Tough TG-1 to TG-7; without EXIF at its wide end (25 mm)"},
     {"g7x_flatport", Port::kFlat, CameraModel::kOpenCV, kOneInchWide, true,
