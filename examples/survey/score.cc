@@ -17,28 +17,50 @@ namespace {
 constexpr double kLimitGsd = 64;  // larger distances are not told apart
 constexpr size_t kChunk = 4096;   // points a task
 
-// The result of `of` for every point.
-template <typename Of>
-std::vector<float> ForEachPoint(const std::vector<Eigen::Vector3f>& points, int num_threads,
-                                const Of& of) {
-  std::vector<float> values(points.size());
+// Calls work(begin, end) for chunks of points, which lie close together as the cloud lists them.
+template <typename Work>
+void ForEachChunk(const std::vector<Eigen::Vector3f>& points, int num_threads, const Work& work) {
   const size_t num_chunks = (points.size() + kChunk - 1) / kChunk;
   ParallelFor(num_threads, static_cast<int64_t>(num_chunks), [&](int64_t chunk) {
     const size_t begin = static_cast<size_t>(chunk) * kChunk;
-    for (size_t i = begin; i < std::min(points.size(), begin + kChunk); ++i) {
-      values[i] = static_cast<float>(of(points[i].cast<double>()));
+    work(begin, std::min(points.size(), begin + kChunk));
+  });
+}
+
+std::vector<float> DistancesToSurface(const SurveyTruth& truth,
+                                      const std::vector<Eigen::Vector3f>& points, int num_threads) {
+  std::vector<float> distances(points.size());
+  ForEachChunk(points, num_threads, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      distances[i] = static_cast<float>(
+          truth.surface.Distance(points[i].cast<double>(), kLimitGsd * truth.gsd));
     }
   });
-  return values;
+  return distances;
 }
 
 // The best that two pictures that hold the point can do; without two, the best of one.
-double OwnGsd(const SurfaceVisibility& visibility, const Eigen::Vector3d& point, double mean_gsd) {
-  const std::vector<Sighting> sightings = visibility.InFrames(point);
+double OwnGsd(const std::vector<Sighting>& sightings, double mean_gsd) {
   if (const auto pair_gsd = BestPairGsd(sightings)) return *pair_gsd;
   double best = sightings.empty() ? mean_gsd : sightings[0].gsd;
   for (const Sighting& sighting : sightings) best = std::min(best, sighting.gsd);
   return best;
+}
+
+std::vector<float> OwnGsds(const SurveyTruth& truth, const std::vector<Eigen::Vector3f>& points,
+                           int num_threads) {
+  const SurfaceVisibility visibility(truth);
+  std::vector<float> own_gsd(points.size());
+  ForEachChunk(points, num_threads, [&](size_t begin, size_t end) {
+    std::vector<Eigen::Vector3d> places(end - begin);
+    for (size_t i = begin; i < end; ++i) places[i - begin] = points[i].cast<double>();
+    const std::vector<size_t> pictures = visibility.PicturesAround(places);
+    for (size_t i = begin; i < end; ++i) {
+      const auto sightings = visibility.InFrames(places[i - begin], pictures);
+      own_gsd[i] = static_cast<float>(OwnGsd(sightings, truth.gsd));
+    }
+  });
+  return own_gsd;
 }
 
 AccuracyScore Accuracy(std::vector<float> distances, double gsd) {
@@ -178,14 +200,8 @@ SurveyScore ScoreSurvey(const SurveyTruth& truth, const SparseModel& model, Scor
   score.scale = truth_from_model.scale;
   for (Eigen::Vector3f& p : points) p = (truth_from_model * p.cast<double>()).cast<float>();
 
-  const std::vector<float> distances =
-      ForEachPoint(points, options.num_threads, [&](const Eigen::Vector3d& point) {
-        return truth.surface.Distance(point, kLimitGsd * truth.gsd);
-      });
-  const SurfaceVisibility visibility(truth);
-  const std::vector<float> own_gsd = ForEachPoint(
-      points, options.num_threads,
-      [&](const Eigen::Vector3d& point) { return OwnGsd(visibility, point, truth.gsd); });
+  const std::vector<float> distances = DistancesToSurface(truth, points, options.num_threads);
+  const std::vector<float> own_gsd = OwnGsds(truth, points, options.num_threads);
   score.accuracy = Accuracy(distances, truth.gsd);
   const std::vector<float> own_ratios = Ratios(distances, own_gsd);
   score.own_accuracy = Accuracy(own_ratios, 1);

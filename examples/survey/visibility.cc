@@ -1,5 +1,6 @@
 #include "examples/survey/visibility.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -52,19 +53,35 @@ Sighting SurfaceVisibility::SightingIn(const View& view, const Eigen::Vector3d& 
           (view.centre - point).normalized()};
 }
 
-std::vector<Sighting> SurfaceVisibility::Sightings(const Eigen::Vector3d& point,
-                                                   const Eigen::Vector3d& normal) const {
-  std::vector<Sighting> sightings;
+std::vector<size_t> SurfaceVisibility::PicturesAround(
+    const std::vector<Eigen::Vector3d>& points) const {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& point : points) box.extend(point);
+  std::vector<size_t> pictures;
+  if (points.empty()) return pictures;
+  const double radius = 0.5 * box.diagonal().norm();
   for (size_t i = 0; i < views_.size(); ++i) {
+    if (!views_[i].camera->MayHold(views_[i].cam_from_world * box.center(), radius)) continue;
+    if ((views_[i].centre - box.center()).norm() <= max_range_ + radius) pictures.push_back(i);
+  }
+  return pictures;
+}
+
+std::vector<Sighting> SurfaceVisibility::Sightings(const Eigen::Vector3d& point,
+                                                   const Eigen::Vector3d& normal,
+                                                   const std::vector<size_t>& pictures) const {
+  std::vector<Sighting> sightings;
+  for (const size_t i : pictures) {
     if (Project(i, point, normal)) sightings.push_back(SightingIn(views_[i], point));
   }
   return sightings;
 }
 
-std::vector<Sighting> SurfaceVisibility::InFrames(const Eigen::Vector3d& point) const {
+std::vector<Sighting> SurfaceVisibility::InFrames(const Eigen::Vector3d& point,
+                                                  const std::vector<size_t>& pictures) const {
   std::vector<Sighting> sightings;
-  for (const View& view : views_) {
-    if (InFrame(view, point)) sightings.push_back(SightingIn(view, point));
+  for (const size_t i : pictures) {
+    if (InFrame(views_[i], point)) sightings.push_back(SightingIn(views_[i], point));
   }
   return sightings;
 }

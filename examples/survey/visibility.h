@@ -26,11 +26,17 @@ class SurfaceVisibility {
   std::optional<Eigen::Vector2d> Project(size_t image_idx, const Eigen::Vector3d& point,
                                          const Eigen::Vector3d& normal) const;
 
-  // All pictures that see it.
-  std::vector<Sighting> Sightings(const Eigen::Vector3d& point,
-                                  const Eigen::Vector3d& normal) const;
-  // All pictures that hold any point of space within their range; what hides it is not looked for.
-  std::vector<Sighting> InFrames(const Eigen::Vector3d& point) const;
+  // The pictures that may hold any of these points; the others hold none of them. Asked once for
+  // points that lie close together, it spares most of a large survey's pictures.
+  std::vector<size_t> PicturesAround(const std::vector<Eigen::Vector3d>& points) const;
+
+  // Those of the pictures that see it.
+  std::vector<Sighting> Sightings(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                                  const std::vector<size_t>& pictures) const;
+  // Those of the pictures that hold any point of space within their range; what hides it is not
+  // looked for.
+  std::vector<Sighting> InFrames(const Eigen::Vector3d& point,
+                                 const std::vector<size_t>& pictures) const;
 
  private:
   struct View {

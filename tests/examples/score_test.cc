@@ -64,7 +64,8 @@ TEST(ScoreTest, RedundancyIsInOwnGsd) {
   // Points a GSD of their own apart, or a little more.
   std::vector<Eigen::Vector3f> cloud;
   for (const Eigen::Vector3f& p : ExactCloud(truth)) {
-    const auto gsd = BestPairGsd(visibility.InFrames(p.cast<double>()));
+    const auto gsd = BestPairGsd(
+        visibility.InFrames(p.cast<double>(), visibility.PicturesAround({p.cast<double>()})));
     if (!gsd) continue;
     const int every = static_cast<int>(std::ceil(*gsd / truth.surface.CellSize()));
     const auto index = [&](float v) { return std::lround(v / truth.surface.CellSize()); };

@@ -80,9 +80,9 @@ void PortCamera::MeasureReach() {
   }
 }
 
-bool PortCamera::IsFarOutside(const Vector3d& point) const {
-  const double reach = reach_ + slope_ * std::max(0.0, point.z());
-  return point.head<2>().squaredNorm() > reach * reach;
+bool PortCamera::MayHold(const Vector3d& centre, double radius) const {
+  const double reach = reach_ + slope_ * std::max(0.0, centre.z() + radius) + radius;
+  return !(centre.head<2>().squaredNorm() > reach * reach);
 }
 
 std::optional<WaterRay> PortCamera::Refract(const Vector3d& in_air) const {
@@ -154,7 +154,7 @@ std::optional<Vector3d> PortCamera::DirectionInAir(const Vector3d& point) const 
 }
 
 std::optional<Eigen::Vector2d> PortCamera::ImgFromCam(const Vector3d& point) const {
-  if (IsFarOutside(point)) return std::nullopt;
+  if (!MayHold(point, 0)) return std::nullopt;
   std::optional<Vector3d> direction = point;
   if (port_.kind == PortKind::kFlat &&
       !(point.dot(axis_) > port_.distance + port_.thickness && point.z() > 0)) {

@@ -43,6 +43,9 @@ class PortCamera {
   // well outside of the picture.
   std::optional<Eigen::Vector2d> ImgFromCam(const Eigen::Vector3d& point) const;
 
+  // Whether the picture may hold a point of this ball, camera frame; where not, it holds none.
+  bool MayHold(const Eigen::Vector3d& centre, double radius) const;
+
   const Camera& InWater() const { return in_water_; }
   bool HasPort() const { return port_.kind != PortKind::kNone; }
 
@@ -50,7 +53,6 @@ class PortCamera {
   std::optional<WaterRay> Refract(const Eigen::Vector3d& in_air) const;
   std::optional<Eigen::Vector3d> DirectionInAir(const Eigen::Vector3d& point) const;
   void MeasureReach();
-  bool IsFarOutside(const Eigen::Vector3d& point) const;
   double Miss(const Eigen::Vector3d& across, double angle, const Eigen::Vector3d& point) const;
 
   PortOptions port_;
