@@ -14,6 +14,8 @@ namespace colmap_seapoint {
 class JobProgress : public WorkObserver {
  public:
   explicit JobProgress(const JobEstimate& estimate);
+  // JobEstimate::Plan(); returns the seconds that are left then.
+  double Plan(const OfWork<WorkCost>& costs, const OfWork<bool>& done_before);
   ~JobProgress() override;
   JobProgress(const JobProgress&) = delete;
   JobProgress& operator=(const JobProgress&) = delete;

@@ -88,6 +88,72 @@ TEST(JobEstimate, TellsTheRatioOfWhatWorkTook) {
   EXPECT_EQ(job.Ratios()[Work::kLookAlikes], 0);
 }
 
+// Ten pictures in, of a job of 700 s that a loaded machine stretches: all that is to come is
+// corrected by what these took.
+TEST(JobEstimate, ALoadedMachineIsKnownFromTheFirstPictures) {
+  for (const double slowness : {0.5, 2.0, 5.0}) {
+    JobEstimate estimate(PlainCosts(), {});
+    estimate.Begin(Work::kPictures, 0, 100, 0);
+    estimate.Advance(Work::kPictures, 10 * slowness, 10);
+    // The trials of the mapper that may follow the first one are in it, by 0.4 of that.
+    EXPECT_NEAR(estimate.SecondsLeft(10 * slowness), slowness * (690 + 0.4 * 200),
+                0.12 * slowness * 770)
+        << slowness;
+  }
+}
+
+TEST(JobEstimate, HalfOfWhatDecodingTookIsTheMachines) {
+  OfWork<WorkCost> costs = PlainCosts();
+  costs[Work::kIntake] = {100, 1};
+  JobEstimate estimate(costs, {});
+  const double before = estimate.SecondsLeft(0) - 100;
+  estimate.Begin(Work::kIntake, 0, 100, 0);
+  estimate.Advance(Work::kIntake, 400, 100);
+  estimate.End(Work::kIntake, 400);
+  EXPECT_NEAR(estimate.SecondsLeft(400), 2 * before, 0.02 * before);
+}
+
+// Of each kind: what has begun counts, also where none of it was planned.
+TEST(JobEstimate, NoWorkIsOutsideThePlan) {
+  OfWork<WorkCost> costs;
+  for (WorkCost& cost : costs.values) cost.seconds_each = 1;
+  for (int i = 0; i < kNumWorks; ++i) {
+    const auto work = static_cast<Work>(i);
+    // The mapper has rules of its own, which the tests below ask for.
+    if (work == Work::kOther || work == Work::kRegistration || work == Work::kRefinement) continue;
+    JobEstimate estimate(costs, {});
+    estimate.Begin(work, 0, 10, 0);
+    EXPECT_GE(estimate.SecondsLeft(0), 9.9) << i;
+    estimate.Advance(work, 5, 5);
+    EXPECT_NEAR(estimate.Share(5), 0.5, 0.1) << i;
+    estimate.End(work, 10);
+  }
+}
+
+// A video becomes more, or fewer, pictures than were expected.
+TEST(JobEstimate, ANewPlanNeverMovesTheShareBack) {
+  for (const int64_t factor : {1, 10}) {
+    OfWork<WorkCost> costs = PlainCosts();
+    costs[Work::kIntake] = {100, 1};
+    JobEstimate estimate(costs, {});
+    estimate.Begin(Work::kIntake, 0, 100, 0);
+    estimate.Advance(Work::kIntake, 100, 100);
+    estimate.End(Work::kIntake, 100);
+    const double share = estimate.Share(100);
+    EXPECT_GT(share, 0.1);
+    costs = PlainCosts();
+    for (WorkCost& cost : costs.values) cost.count *= factor;
+    OfWork<bool> done;
+    done[Work::kPictures] = true;
+    estimate.Plan(costs, done);
+    EXPECT_GE(estimate.Share(100), share);
+    const auto count = static_cast<double>(factor);
+    EXPECT_NEAR(estimate.SecondsLeft(100), count * (600 + 0.4 * 200), 0.3 * count * 600);
+    estimate.Begin(Work::kPairs, 100, 200 * factor, 0);  // nothing of the intake is left over
+    EXPECT_NEAR(estimate.SecondsLeft(100), count * (600 + 0.4 * 200), 0.3 * count * 600);
+  }
+}
+
 TEST(JobEstimate, AHardMapperSaysNothingOfTheMachine) {
   JobEstimate estimate(PlainCosts(), {});
   estimate.Begin(Work::kRegistration, 0, 100, 0);

@@ -1,0 +1,313 @@
+#include "colmap_seapoint/markers/fit_marker.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "colmap_seapoint/markers/marker_codes.h"
+
+namespace colmap_seapoint {
+namespace {
+
+constexpr double kReach = 0.35;      // cells around the square that are compared
+constexpr double kMaxPixels = 6000;  // of one marker; of a larger one, every second or third row
+constexpr double kFirstBlur = 0.7;   // standard deviation, pixels
+constexpr double kMinBlur = 0.25;    // of the pixels themselves
+constexpr int kMaxSteps = 25;
+constexpr double kConverged = 1e-4;    // pixels
+constexpr double kMaxMove = 2.5;       // of a corner, pixels
+constexpr double kMaxResidual = 0.15;  // root mean square, of the contrast
+
+// Where a pixel lies on the print: homogeneous, the last of the nine numbers being 1.
+constexpr int kPlaceParams = 8;
+enum Param { kBlack = kPlaceParams, kWhite, kGradientX, kGradientY, kTone, kBlur, kNumParams };
+using Params = Eigen::Matrix<double, kNumParams, 1>;
+using Normal = Eigen::Matrix<double, kNumParams, kNumParams>;
+
+double Linear(uint8_t value) {
+  const double v = value / 255.0;
+  return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+}
+
+double Density(double x) { return std::exp(-0.5 * x * x) / std::sqrt(2 * M_PI); }
+double Distribution(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
+
+// How much of each column (or row) of cells a blurred look at `u` sees, and the derivatives by u
+// and by the blur. The margin counts as one cell that never ends.
+struct CellShares {
+  static constexpr int kMost = 12;
+  std::array<double, kMost> share{}, by_u{}, by_blur{};
+
+  CellShares(double u, double blur, int num_cells) {
+    Edge before;
+    for (int k = 0; k <= num_cells + 1; ++k) {
+      const Edge after = k <= num_cells ? Edge((k - u) / blur, blur) : Edge::Behind();
+      const auto i = static_cast<size_t>(k);
+      share[i] = after.passed - before.passed;
+      by_u[i] = after.by_u - before.by_u;
+      by_blur[i] = after.by_blur - before.by_blur;
+      before = after;
+    }
+  }
+
+ private:
+  struct Edge {
+    double passed = 0, by_u = 0, by_blur = 0;
+    Edge() = default;
+    Edge(double z, double blur)
+        : passed(Distribution(z)), by_u(-Density(z) / blur), by_blur(-z * Density(z) / blur) {}
+    static Edge Behind() {
+      Edge edge;
+      edge.passed = 1;
+      return edge;
+    }
+  };
+};
+
+// The white share of the print around a place, 0 to 1, and its derivatives.
+struct Shade {
+  double white = 0, by_u = 0, by_v = 0, by_blur = 0;
+};
+
+class Print {
+ public:
+  explicit Print(const DetectedMarker& marker) : cells_(NumCells(marker.name.family)) {
+    for (int row = -1; row <= cells_; ++row) {
+      for (int column = -1; column <= cells_; ++column) {
+        const int as_printed = marker.is_mirrored ? cells_ - 1 - column : column;
+        white_.push_back(IsWhiteCell(marker.name, as_printed, row) ? 1 : 0);
+      }
+    }
+  }
+
+  int NumCellsOfSide() const { return cells_; }
+
+  // `blur`: along u and v, cells.
+  Shade At(double u, double v, const Eigen::Vector2d& blur) const {
+    const CellShares columns(u, blur.x(), cells_), rows(v, blur.y(), cells_);
+    Shade shade;
+    const auto n = static_cast<size_t>(cells_ + 2);
+    for (size_t j = 0; j < n; ++j) {
+      double share = 0, by_u = 0, by_blur = 0;
+      for (size_t i = 0; i < n; ++i) {
+        if (white_[j * n + i] == 0) continue;
+        share += columns.share[i];
+        by_u += columns.by_u[i];
+        by_blur += columns.by_blur[i];
+      }
+      shade.white += rows.share[j] * share;
+      shade.by_u += rows.share[j] * by_u;
+      shade.by_v += rows.by_u[j] * share;
+      // By the factor that multiplies both blurs.
+      shade.by_blur += rows.share[j] * by_blur * blur.x() + rows.by_blur[j] * share * blur.y();
+    }
+    return shade;
+  }
+
+ private:
+  int cells_;
+  std::vector<char> white_;  // row by row, with the margin
+};
+
+struct Pixel {
+  Eigen::Vector2d place;  // from the marker's centre
+  double value = 0;       // linear light
+};
+
+// The homography that takes the corners to those of the print.
+Eigen::Matrix3d PrintFromPixel(const std::array<Eigen::Vector2d, 4>& corners,
+                               const std::array<Eigen::Vector2d, 4>& on_print) {
+  Eigen::Matrix<double, 8, 8> equations;
+  Eigen::Matrix<double, 8, 1> right;
+  for (int k = 0; k < 4; ++k) {
+    const Eigen::Vector2d &p = corners[static_cast<size_t>(k)],
+                          &q = on_print[static_cast<size_t>(k)];
+    equations.row(2 * k) << p.x(), p.y(), 1, 0, 0, 0, -p.x() * q.x(), -p.y() * q.x();
+    equations.row(2 * k + 1) << 0, 0, 0, p.x(), p.y(), 1, -p.x() * q.y(), -p.y() * q.y();
+    right.segment<2>(2 * k) = q;
+  }
+  const Eigen::Matrix<double, 8, 1> h = equations.fullPivLu().solve(right);
+  Eigen::Matrix3d matrix;
+  matrix << h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], 1;
+  return matrix;
+}
+
+Eigen::Matrix3d PlaceOf(const Params& params) {
+  Eigen::Matrix3d matrix;
+  matrix << params[0], params[1], params[2], params[3], params[4], params[5], params[6], params[7],
+      1;
+  return matrix;
+}
+
+// As the library has them: it reads the bits of a print with these corners.
+std::array<Eigen::Vector2d, 4> CornersOfPrint(int cells) {
+  const double n = cells;
+  return {{{0, n}, {n, n}, {n, 0}, {0, 0}}};
+}
+
+// Pixels a cell, along u and v, in the middle of the marker.
+Eigen::Vector2d CellSize(const std::array<Eigen::Vector2d, 4>& corners, int cells) {
+  const double across = (corners[1] - corners[0]).norm() + (corners[2] - corners[3]).norm();
+  const double along = (corners[0] - corners[3]).norm() + (corners[1] - corners[2]).norm();
+  return Eigen::Vector2d(across, along) / (2.0 * cells);
+}
+
+std::vector<Pixel> PixelsOf(const GrayImage& picture, const Eigen::Vector2d& centre,
+                            const Eigen::Matrix3d& print_from_pixel,
+                            const std::array<Eigen::Vector2d, 4>& corners, int cells) {
+  Eigen::Array2d low(1e9, 1e9), high(-1e9, -1e9);
+  for (const Eigen::Vector2d& corner : corners) {
+    low = low.min(corner.array());
+    high = high.max(corner.array());
+  }
+  const double margin = 2 + (high - low).maxCoeff() * kReach / cells;
+  const int step = std::max(1, static_cast<int>(std::sqrt((high - low).prod() / kMaxPixels)));
+  std::vector<Pixel> pixels;
+  const auto bounds = [&](double from, double to, double shift, int size) {
+    return std::pair(std::max(0, static_cast<int>(std::floor(from - margin + shift))),
+                     std::min(size - 1, static_cast<int>(std::ceil(to + margin + shift))));
+  };
+  const auto [x0, x1] = bounds(low.x(), high.x(), centre.x(), picture.width);
+  const auto [y0, y1] = bounds(low.y(), high.y(), centre.y(), picture.height);
+  for (int y = y0; y <= y1; y += step) {
+    for (int x = x0; x <= x1; x += step) {
+      const Eigen::Vector2d place(x + 0.5 - centre.x(), y + 0.5 - centre.y());
+      const Eigen::Vector2d print = (print_from_pixel * place.homogeneous()).hnormalized();
+      if (print.minCoeff() < -kReach || print.maxCoeff() > cells + kReach) continue;
+      pixels.push_back({place, Linear(picture.At(x, y))});
+    }
+  }
+  return pixels;
+}
+
+// What a pixel should show, and the derivatives by all unknowns.
+double Predict(const Print& print, const Params& params, const Eigen::Vector2d& cell,
+               const Eigen::Vector2d& place, Params* derivative) {
+  const double w = params[6] * place.x() + params[7] * place.y() + 1;
+  const double u = (params[0] * place.x() + params[1] * place.y() + params[2]) / w;
+  const double v = (params[3] * place.x() + params[4] * place.y() + params[5]) / w;
+  const double blur = std::exp(params[kBlur]);
+  const Shade shade = print.At(u, v, blur * cell.cwiseInverse());
+  const double middle = 0.5 * print.NumCellsOfSide(), p = shade.white;
+  const double light = 1 + params[kGradientX] * (u - middle) + params[kGradientY] * (v - middle);
+  const double tone = p + params[kTone] * p * (1 - p);
+  const double contrast = params[kWhite] - params[kBlack];
+  const double by_shade = light * contrast * (1 + params[kTone] * (1 - 2 * p));
+  const double bare = params[kBlack] + contrast * tone;
+  const double by_u = by_shade * shade.by_u + bare * params[kGradientX];
+  const double by_v = by_shade * shade.by_v + bare * params[kGradientY];
+  const Eigen::Vector3d by_line(place.x() / w, place.y() / w, 1 / w);
+  derivative->segment<3>(0) = by_u * by_line;
+  derivative->segment<3>(3) = by_v * by_line;
+  derivative->segment<2>(6) = -(by_u * u + by_v * v) * by_line.head<2>();
+  (*derivative)[kBlack] = light * (1 - tone);
+  (*derivative)[kWhite] = light * tone;
+  (*derivative)[kGradientX] = bare * (u - middle);
+  (*derivative)[kGradientY] = bare * (v - middle);
+  (*derivative)[kTone] = light * contrast * p * (1 - p);
+  (*derivative)[kBlur] = by_shade * shade.by_blur;
+  return light * bare;
+}
+
+// Least squares by Levenberg and Marquardt.
+class Fit {
+ public:
+  Fit(const Print& print, const Eigen::Vector2d& cell, const std::vector<Pixel>& pixels)
+      : print_(print), cell_(cell), pixels_(pixels) {}
+
+  // The sum of the squared residuals.
+  double Run(Params* params) const {
+    double damping = 1e-3;
+    double cost = Cost(*params);
+    for (int step = 0; step < kMaxSteps && damping < 1e6; ++step) {
+      Normal normal = Normal::Zero();
+      Params right = Params::Zero();
+      Linearise(*params, &normal, &right);
+      normal.diagonal() *= 1 + damping;
+      normal.diagonal().array() += 1e-12;
+      const Params move = normal.ldlt().solve(right);
+      Params moved = *params + move;
+      moved[kTone] = std::clamp(moved[kTone], -0.95, 0.95);
+      moved[kBlur] = std::clamp(moved[kBlur], std::log(kMinBlur), std::log(cell_.minCoeff()));
+      const double moved_cost = Cost(moved);
+      if (!(moved_cost < cost)) {
+        damping *= 10;
+        continue;
+      }
+      const bool is_done = cost - moved_cost < kConverged * kConverged * cost;
+      *params = moved;
+      cost = moved_cost;
+      damping *= 0.1;
+      if (is_done) break;
+    }
+    return cost;
+  }
+
+ private:
+  double Cost(const Params& params) const {
+    double cost = 0;
+    Params ignored;
+    for (const Pixel& pixel : pixels_) {
+      const double residual = pixel.value - Predict(print_, params, cell_, pixel.place, &ignored);
+      cost += residual * residual;
+    }
+    return cost;
+  }
+
+  void Linearise(const Params& params, Normal* normal, Params* right) const {
+    Params derivative;
+    for (const Pixel& pixel : pixels_) {
+      const double residual =
+          pixel.value - Predict(print_, params, cell_, pixel.place, &derivative);
+      *normal += derivative * derivative.transpose();
+      *right += residual * derivative;
+    }
+  }
+
+  const Print& print_;
+  const Eigen::Vector2d cell_;  // pixels
+  const std::vector<Pixel>& pixels_;
+};
+
+Params FirstParams(const Eigen::Matrix3d& place, const std::vector<Pixel>& pixels) {
+  std::vector<double> values;
+  for (const Pixel& pixel : pixels) values.push_back(pixel.value);
+  std::sort(values.begin(), values.end());
+  Params params = Params::Zero();
+  params.head<kPlaceParams>() << place(0, 0), place(0, 1), place(0, 2), place(1, 0), place(1, 1),
+      place(1, 2), place(2, 0), place(2, 1);
+  params[kBlack] = values[values.size() / 20];
+  params[kWhite] = values[values.size() - 1 - values.size() / 20];
+  params[kBlur] = std::log(kFirstBlur);
+  return params;
+}
+
+}  // namespace
+
+std::optional<std::array<Eigen::Vector2d, 4>> FitCorners(const GrayImage& picture,
+                                                         const DetectedMarker& marker) {
+  const Print print(marker);
+  const int cells = print.NumCellsOfSide();
+  const Eigen::Vector2d centre = marker.Centre();
+  if (!centre.allFinite()) return std::nullopt;
+  std::array<Eigen::Vector2d, 4> corners = marker.corners;
+  for (Eigen::Vector2d& corner : corners) corner -= centre;
+  const auto on_print = CornersOfPrint(cells);
+  const Eigen::Matrix3d place = PrintFromPixel(corners, on_print);
+  const auto pixels = PixelsOf(picture, centre, place, corners, cells);
+  if (!place.allFinite() || pixels.size() < 4 * kNumParams) return std::nullopt;
+  Params params = FirstParams(place, pixels);
+  const double cost = Fit(print, CellSize(corners, cells), pixels).Run(&params);
+  const double residual = std::sqrt(cost / static_cast<double>(pixels.size()));
+  if (!(residual < kMaxResidual * std::abs(params[kWhite] - params[kBlack]))) return std::nullopt;
+  const Eigen::Matrix3d pixel_from_print = PlaceOf(params).inverse();
+  for (size_t k = 0; k < 4; ++k) {
+    const Eigen::Vector2d fitted = (pixel_from_print * on_print[k].homogeneous()).hnormalized();
+    if (!((fitted - corners[k]).norm() < kMaxMove)) return std::nullopt;
+    corners[k] = fitted + centre;
+  }
+  return corners;
+}
+
+}  // namespace colmap_seapoint
