@@ -21,7 +21,16 @@ constexpr double kMaxResidual = 0.15;  // root mean square, of the contrast
 
 // Where a pixel lies on the print: homogeneous, the last of the nine numbers being 1.
 constexpr int kPlaceParams = 8;
-enum Param { kBlack = kPlaceParams, kWhite, kGradientX, kGradientY, kTone, kBlur, kNumParams };
+enum Param {
+  kBlack = kPlaceParams,
+  kWhite,
+  kAround,  // what lies around the print: 0 as black ... 1 as white
+  kGradientX,
+  kGradientY,
+  kTone,
+  kBlur,
+  kNumParams
+};
 using Params = Eigen::Matrix<double, kNumParams, 1>;
 using Normal = Eigen::Matrix<double, kNumParams, kNumParams>;
 
@@ -34,74 +43,77 @@ double Density(double x) { return std::exp(-0.5 * x * x) / std::sqrt(2 * M_PI); 
 double Distribution(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
 
 // How much of each column (or row) of cells a blurred look at `u` sees, and the derivatives by u
-// and by the blur. The margin counts as one cell that never ends.
+// and by the blur: from the margin's on, which is one cell wide, to that at the other side. The
+// last one is the sum of all.
 struct CellShares {
-  static constexpr int kMost = 12;
+  static constexpr size_t kMost = 12;
   std::array<double, kMost> share{}, by_u{}, by_blur{};
 
   CellShares(double u, double blur, int num_cells) {
-    Edge before;
+    const Edge first((-1 - u) / blur, blur);
+    Edge before = first;
     for (int k = 0; k <= num_cells + 1; ++k) {
-      const Edge after = k <= num_cells ? Edge((k - u) / blur, blur) : Edge::Behind();
-      const auto i = static_cast<size_t>(k);
-      share[i] = after.passed - before.passed;
-      by_u[i] = after.by_u - before.by_u;
-      by_blur[i] = after.by_blur - before.by_blur;
+      const Edge after((k - u) / blur, blur);
+      Set(static_cast<size_t>(k), before, after);
       before = after;
     }
+    Set(static_cast<size_t>(num_cells + 2), first, before);
   }
 
  private:
   struct Edge {
-    double passed = 0, by_u = 0, by_blur = 0;
-    Edge() = default;
+    double passed, by_u, by_blur;
     Edge(double z, double blur)
         : passed(Distribution(z)), by_u(-Density(z) / blur), by_blur(-z * Density(z) / blur) {}
-    static Edge Behind() {
-      Edge edge;
-      edge.passed = 1;
-      return edge;
-    }
   };
+
+  void Set(size_t i, const Edge& before, const Edge& after) {
+    share[i] = after.passed - before.passed;
+    by_u[i] = after.by_u - before.by_u;
+    by_blur[i] = after.by_blur - before.by_blur;
+  }
 };
 
 // The white share of the print around a place, 0 to 1, and its derivatives.
 struct Shade {
   double white = 0, by_u = 0, by_v = 0, by_blur = 0;
+  double around = 0;  // the share of what is beyond the margin
 };
 
 class Print {
  public:
-  explicit Print(const DetectedMarker& marker) : cells_(NumCells(marker.name.family)) {
+  explicit Print(const MarkerName& name) : cells_(NumCells(name.family)) {
     for (int row = -1; row <= cells_; ++row) {
       for (int column = -1; column <= cells_; ++column) {
-        const int as_printed = marker.is_mirrored ? cells_ - 1 - column : column;
-        white_.push_back(IsWhiteCell(marker.name, as_printed, row) ? 1 : 0);
+        white_.push_back(IsWhiteCell(name, column, row) ? 1 : 0);
       }
     }
   }
 
   int NumCellsOfSide() const { return cells_; }
 
-  // `blur`: along u and v, cells.
-  Shade At(double u, double v, const Eigen::Vector2d& blur) const {
+  // `blur`: along u and v, cells; `around`: how white it is beyond the margin.
+  Shade At(double u, double v, const Eigen::Vector2d& blur, double around) const {
     const CellShares columns(u, blur.x(), cells_), rows(v, blur.y(), cells_);
-    Shade shade;
     const auto n = static_cast<size_t>(cells_ + 2);
-    for (size_t j = 0; j < n; ++j) {
-      double share = 0, by_u = 0, by_blur = 0;
-      for (size_t i = 0; i < n; ++i) {
-        if (white_[j * n + i] == 0) continue;
-        share += columns.share[i];
-        by_u += columns.by_u[i];
-        by_blur += columns.by_blur[i];
-      }
-      shade.white += rows.share[j] * share;
-      shade.by_u += rows.share[j] * by_u;
-      shade.by_v += rows.by_u[j] * share;
+    Shade shade;
+    const auto add = [&](double factor, size_t column, size_t row) {
+      const double share = columns.share[column] * rows.share[row];
+      shade.white += factor * share;
+      shade.by_u += factor * columns.by_u[column] * rows.share[row];
+      shade.by_v += factor * columns.share[column] * rows.by_u[row];
       // By the factor that multiplies both blurs.
-      shade.by_blur += rows.share[j] * by_blur * blur.x() + rows.by_blur[j] * share * blur.y();
+      shade.by_blur += factor * (columns.by_blur[column] * rows.share[row] * blur.x() +
+                                 columns.share[column] * rows.by_blur[row] * blur.y());
+    };
+    for (size_t row = 0; row < n; ++row) {
+      for (size_t column = 0; column < n; ++column) {
+        if (white_[row * n + column] != 0) add(1, column, row);
+      }
     }
+    add(-around, n, n);
+    shade.white += around;
+    shade.around = 1 - columns.share[n] * rows.share[n];
     return shade;
   }
 
@@ -188,7 +200,7 @@ double Predict(const Print& print, const Params& params, const Eigen::Vector2d& 
   const double u = (params[0] * place.x() + params[1] * place.y() + params[2]) / w;
   const double v = (params[3] * place.x() + params[4] * place.y() + params[5]) / w;
   const double blur = std::exp(params[kBlur]);
-  const Shade shade = print.At(u, v, blur * cell.cwiseInverse());
+  const Shade shade = print.At(u, v, blur * cell.cwiseInverse(), params[kAround]);
   const double middle = 0.5 * print.NumCellsOfSide(), p = shade.white;
   const double light = 1 + params[kGradientX] * (u - middle) + params[kGradientY] * (v - middle);
   const double tone = p + params[kTone] * p * (1 - p);
@@ -203,6 +215,7 @@ double Predict(const Print& print, const Params& params, const Eigen::Vector2d& 
   derivative->segment<2>(6) = -(by_u * u + by_v * v) * by_line.head<2>();
   (*derivative)[kBlack] = light * (1 - tone);
   (*derivative)[kWhite] = light * tone;
+  (*derivative)[kAround] = by_shade * shade.around;
   (*derivative)[kGradientX] = bare * (u - middle);
   (*derivative)[kGradientY] = bare * (v - middle);
   (*derivative)[kTone] = light * contrast * p * (1 - p);
@@ -219,50 +232,47 @@ class Fit {
   // The sum of the squared residuals.
   double Run(Params* params) const {
     double damping = 1e-3;
-    double cost = Cost(*params);
+    Equations here = Linearise(*params);
     for (int step = 0; step < kMaxSteps && damping < 1e6; ++step) {
-      Normal normal = Normal::Zero();
-      Params right = Params::Zero();
-      Linearise(*params, &normal, &right);
+      Normal normal = here.normal;
       normal.diagonal() *= 1 + damping;
       normal.diagonal().array() += 1e-12;
-      const Params move = normal.ldlt().solve(right);
-      Params moved = *params + move;
+      Params moved = *params + normal.ldlt().solve(here.right);
       moved[kTone] = std::clamp(moved[kTone], -0.95, 0.95);
       moved[kBlur] = std::clamp(moved[kBlur], std::log(kMinBlur), std::log(cell_.minCoeff()));
-      const double moved_cost = Cost(moved);
-      if (!(moved_cost < cost)) {
+      const Equations there = Linearise(moved);
+      if (!(there.cost < here.cost)) {
         damping *= 10;
         continue;
       }
-      const bool is_done = cost - moved_cost < kConverged * kConverged * cost;
+      const bool is_done = here.cost - there.cost < kConverged * here.cost;
       *params = moved;
-      cost = moved_cost;
+      here = there;
       damping *= 0.1;
       if (is_done) break;
     }
-    return cost;
+    return here.cost;
   }
 
  private:
-  double Cost(const Params& params) const {
+  struct Equations {
+    Normal normal = Normal::Zero();
+    Params right = Params::Zero();
     double cost = 0;
-    Params ignored;
-    for (const Pixel& pixel : pixels_) {
-      const double residual = pixel.value - Predict(print_, params, cell_, pixel.place, &ignored);
-      cost += residual * residual;
-    }
-    return cost;
-  }
+  };
 
-  void Linearise(const Params& params, Normal* normal, Params* right) const {
+  Equations Linearise(const Params& params) const {
+    Equations sum;
     Params derivative;
     for (const Pixel& pixel : pixels_) {
       const double residual =
           pixel.value - Predict(print_, params, cell_, pixel.place, &derivative);
-      *normal += derivative * derivative.transpose();
-      *right += residual * derivative;
+      sum.normal.selfadjointView<Eigen::Lower>().rankUpdate(derivative);
+      sum.right += residual * derivative;
+      sum.cost += residual * residual;
     }
+    sum.normal = sum.normal.selfadjointView<Eigen::Lower>();
+    return sum;
   }
 
   const Print& print_;
@@ -279,6 +289,7 @@ Params FirstParams(const Eigen::Matrix3d& place, const std::vector<Pixel>& pixel
       place(1, 2), place(2, 0), place(2, 1);
   params[kBlack] = values[values.size() / 20];
   params[kWhite] = values[values.size() - 1 - values.size() / 20];
+  params[kAround] = 0.5;
   params[kBlur] = std::log(kFirstBlur);
   return params;
 }
@@ -287,7 +298,8 @@ Params FirstParams(const Eigen::Matrix3d& place, const std::vector<Pixel>& pixel
 
 std::optional<std::array<Eigen::Vector2d, 4>> FitCorners(const GrayImage& picture,
                                                          const DetectedMarker& marker) {
-  const Print print(marker);
+  if (marker.is_mirrored) return std::nullopt;
+  const Print print(marker.name);
   const int cells = print.NumCellsOfSide();
   const Eigen::Vector2d centre = marker.Centre();
   if (!centre.allFinite()) return std::nullopt;

@@ -16,8 +16,8 @@ namespace colmap_seapoint {
 // is bent beyond that), the blur, black, white and a gradient of the light are unknowns beside the
 // place; that the pattern has edges of both kinds tells them apart. Sides of exact pictures of
 // markers 25 pixels wide come out within 0.2 %.
-// nullopt where the picture is not like the print (sand on it, a glare), or the corners would move
-// by more than the detector errs. Cost: about 2 ms.
+// nullopt where the picture is not like the print (sand on it, a glare, a mirror image), or the
+// corners would move by more than the detector errs. Cost: about 10 ms.
 std::optional<std::array<Eigen::Vector2d, 4>> FitCorners(const GrayImage& picture,
                                                          const DetectedMarker& marker);
 

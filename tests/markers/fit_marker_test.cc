@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/markers/marker_world.h"
@@ -29,57 +30,65 @@ double SideOf(const std::array<Eigen::Vector2d, 4>& corners) {
 
 struct Errors {
   int num_found = 0;
-  double detected = 0, fitted = 0;  // mean relative errors of the sides
-  double worst_corner = 0;          // pixels
+  double side = 0;    // mean relative error
+  double centre = 0;  // the largest one, pixels
+
+  void Add(const DetectedMarker& marker, const Eigen::Vector2d& true_centre) {
+    ++num_found;
+    side += (SideOf(marker.corners) / kWidth - 1) / kNumMarkers;
+    centre = std::max(centre, (marker.Centre() - true_centre).norm());
+  }
+
+  static constexpr int kNumMarkers = 6;
 };
 
-// Markers of several numbers and turns, seen from straight above, one a picture.
-Errors Measure(const Water& water, bool in_srgb, bool is_mirrored = false) {
-  const Camera camera = MakeCamera(CameraModel::kPinhole, 500, 120, 90);
+// Markers of several numbers and turns, seen from straight above, one a picture. None lies along
+// the rows: the picture's few rays would move its edges.
+Errors Measure(const Water& water, bool in_srgb) {
+  const Camera camera = MakeCamera(CameraModel::kPinhole, 500, 100, 80);
   Errors errors;
-  for (int id = 0; id < 10; ++id) {
+  for (int id = 0; id < Errors::kNumMarkers; ++id) {
     const PlaneMarker marker = {{MarkerFamily::kTag36h11, 3 * id},
-                                {0.011 * id - 0.05, 0.007 * id - 0.03, 2},
+                                {0.011 * id - 0.03, 0.007 * id - 0.02, 2},
                                 0.1,
-                                0.37 * id,
-                                is_mirrored};
+                                0.3 + 0.47 * id};
     GrayImage picture = MarkerPicture({marker}, camera, Rigid3d(), water);
     if (in_srgb) picture = InSrgb(picture);
     for (const DetectedMarker& found : DetectMarkers(picture, {MarkerFamily::kTag36h11})) {
-      const auto fitted = FitCorners(picture, found);
-      if (!fitted) continue;
-      ++errors.num_found;
-      errors.detected += SideOf(found.corners) / kWidth - 1;
-      errors.fitted += SideOf(*fitted) / kWidth - 1;
-      for (const Eigen::Vector2d& corner : *fitted) {
-        double nearest = 1e9;
-        for (int k = 0; k < 4; ++k) {
-          nearest = std::min(nearest, (corner - *camera.ImgFromCam(marker.Corner(k))).norm());
-        }
-        errors.worst_corner = std::max(errors.worst_corner, nearest);
-      }
+      errors.Add(found, *camera.ImgFromCam(marker.centre));
     }
   }
-  errors.fitted /= errors.num_found;
   return errors;
 }
 
+// The library's corners leave these sides 0.1 to 3.2 % wrong, and centres up to 0.36 pixels.
 TEST(FitCornersTest, SidesAreRightInLinearLightAndAsCamerasGiveIt) {
   for (const bool in_srgb : {false, true}) {
     for (const int blur : {0, 1, 3}) {
       const Errors errors = Measure({1, 0, blur, 0.2}, in_srgb);
-      printf("%d %d: detected %.4f fitted %.4f worst %.3f\n", in_srgb, blur, errors.detected / errors.num_found, errors.fitted, errors.worst_corner);
-      EXPECT_EQ(errors.num_found, 10);
-      EXPECT_LT(std::abs(errors.fitted), 0.002) << in_srgb << " " << blur;
-      EXPECT_LT(errors.worst_corner, 0.15) << in_srgb << " " << blur;
+      EXPECT_EQ(errors.num_found, Errors::kNumMarkers);
+      EXPECT_LT(std::abs(errors.side), 0.002) << in_srgb << " " << blur;
+      EXPECT_LT(errors.centre, 0.08) << in_srgb << " " << blur;
     }
   }
 }
 
-TEST(FitCornersTest, MirrorImages) {
-  const Errors errors = Measure({}, true, true);
-  EXPECT_EQ(errors.num_found, 10);
-  EXPECT_LT(std::abs(errors.fitted), 0.002);
+TEST(FitCornersTest, WhatIsNotLikeThePrintStaysAsItIs) {
+  const PlaneMarker marker = {{MarkerFamily::kTag36h11, 3}, {0, 0, 2}, 0.1, 0.3};
+  const Camera camera = MakeCamera(CameraModel::kPinhole, 500, 100, 80);
+  const GrayImage picture = MarkerPicture({marker}, camera, Rigid3d());
+  auto found = DetectMarkers(picture, {MarkerFamily::kTag36h11});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_TRUE(FitCorners(picture, found[0]));
+  found[0].name.id = 4;
+  EXPECT_FALSE(FitCorners(picture, found[0]));
+  found[0].name.id = 3;
+  EXPECT_FALSE(FitCorners(GrayImage(100, 80, 1, 128), found[0]));
+  EXPECT_FALSE(FitCorners(GrayImage(), found[0]));
+  found[0].corners.fill({50, 40});
+  EXPECT_FALSE(FitCorners(picture, found[0]));
+  found[0].corners.fill({std::nan(""), 1e300});
+  EXPECT_FALSE(FitCorners(picture, found[0]));
 }
 
 }  // namespace

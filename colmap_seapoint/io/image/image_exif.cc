@@ -1,5 +1,6 @@
 #include "colmap_seapoint/io/image/image_exif.h"
 
+#include <charconv>
 #include <cmath>
 #include <exiv2/exiv2.hpp>
 #include <locale>
@@ -106,17 +107,23 @@ std::optional<double> XmpNumber(const Exiv2::XmpData& xmp, const std::string& na
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-// "43,6.125N" and "43,6,7.5S" as XMP's specification writes them, "+43.102" as drones do.
+// "43,6.125N" and "43,6,7.5S" as XMP's specification writes them, "+43.102" as drones do. Streams
+// would take the E of the east for that of an exponent.
 std::optional<double> XmpAngle(const Exiv2::XmpData& xmp, const std::string& name) {
-  std::istringstream text(XmpText(xmp, name));
-  text.imbue(std::locale::classic());
-  double angle = 0, part = 0;
-  if (!(text >> angle)) return std::nullopt;
-  char after = 0;
-  for (double unit = 1.0 / 60; text >> after && after == ',' && text >> part; unit /= 60) {
+  const std::string text = XmpText(xmp, name);
+  const char *next = text.data(), *const end = next + text.size();
+  if (next != end && *next == '+') ++next;
+  double angle = 0;
+  for (double unit = 1;; unit /= 60) {
+    double part = 0;
+    const auto number = std::from_chars(next, end, part);
+    if (number.ec != std::errc()) return std::nullopt;
     angle += unit * part;
+    next = number.ptr;
+    if (next == end || *next != ',') break;
+    ++next;
   }
-  return after == 'S' || after == 'W' ? -angle : angle;
+  return next != end && (*next == 'S' || *next == 'W') ? -angle : angle;
 }
 
 std::optional<GeoPosition> GpsOfXmp(const Exiv2::XmpData& xmp) {

@@ -324,6 +324,10 @@ TEST(ImageInfo, APositionInXmpAlone) {
   EXPECT_NEAR(gps->latitude_deg, -43.51, 1e-9);
   EXPECT_NEAR(gps->longitude_deg, -5.25, 1e-9);
   EXPECT_NEAR(gps->altitude_m, -12.5, 1e-9);
+  AddXmpGps(dir / "a.jpg", "43,30,36N", "5,15.3E");
+  gps = ReadImageInfo(dir / "a.jpg").gps;
+  EXPECT_NEAR(gps->latitude_deg, 43.51, 1e-9);
+  EXPECT_NEAR(gps->longitude_deg, 5.255, 1e-9);
   AddXmpGps(dir / "a.jpg", "95,0,0N", "5,15,0E");
   EXPECT_FALSE(ReadImageInfo(dir / "a.jpg").gps);
   AddXmpGps(dir / "a.jpg", "north", "");
