@@ -51,10 +51,6 @@ double TrialsToCome(int trial, int64_t num_pictures) {
 
 }  // namespace
 
-JobEstimate::JobEstimate(const OfWork<WorkCost>& costs, const OfWork<bool>& done_before) {
-  Plan(costs, done_before);
-}
-
 void JobEstimate::Plan(const OfWork<WorkCost>& costs, const OfWork<bool>& done_before) {
   seconds_before_ = 0;
   for (const Work work : kPlanned) {

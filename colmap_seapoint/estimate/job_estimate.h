@@ -16,11 +16,9 @@ namespace colmap_seapoint {
 
 class JobEstimate {
  public:
-  // `done_before`: work that an earlier run has finished. It counts as done, not as time left.
-  JobEstimate(const OfWork<WorkCost>& costs, const OfWork<bool>& done_before);
-
-  // What is expected from now on, once more is known: of videos, how many pictures they became.
-  // What was measured stays.
+  // What is expected from now on, at first and whenever more is known: of videos, how many pictures
+  // they became. What was measured stays. `done_before`: work that an earlier run has finished. It
+  // counts as done, not as time left.
   void Plan(const OfWork<WorkCost>& costs, const OfWork<bool>& done_before);
 
   // `now`: seconds since the job began, never less than at an earlier call. Counts are taken as

@@ -14,9 +14,7 @@ constexpr double kMaxLineSeconds = 20;
 
 }  // namespace
 
-JobProgress::JobProgress(const JobEstimate& estimate) : estimate_(estimate) {
-  SetWorkObserver(this);
-}
+JobProgress::JobProgress() { SetWorkObserver(this); }
 
 JobProgress::~JobProgress() { SetWorkObserver(nullptr); }
 

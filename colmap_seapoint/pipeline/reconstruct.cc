@@ -369,7 +369,8 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& giv
   RunReport report = StartReport("automatic_reconstructor", options, options.run);
   report.options.insert(report.options.end(), options.mapper.begin(), options.mapper.end());
 
-  JobProgress progress(JobEstimate(CostsHere(SizeBeforeIntake(options, workspace.images)), {}));
+  JobProgress progress;
+  progress.Plan(CostsHere(SizeBeforeIntake(options, workspace.images)), {});
   TakeInPictures({options.frames, options.run.num_threads}, &workspace, &state, &report);
   plan.job.image_path = workspace.images;
   const PictureSet pictures = ReadPictures(options, workspace);
