@@ -10,10 +10,12 @@
 namespace colmap_seapoint {
 namespace {
 
-constexpr double kReach = 0.35;      // cells around the square that are compared
-constexpr double kMaxPixels = 6000;  // of one marker; of a larger one, every second or third row
-constexpr double kFirstBlur = 0.7;   // standard deviation, pixels
-constexpr double kMinBlur = 0.25;    // of the pixels themselves
+constexpr double kReach = 0.35;       // cells around the square that are compared
+constexpr double kEdgeReach = 4;      // pixels around the cells' edges that tell where these lie
+constexpr uint32_t kFlatPixels = 16;  // of those between them, one in so many
+constexpr double kMaxPixels = 12000;  // of one marker, about
+constexpr double kFirstBlur = 0.7;    // standard deviation, pixels
+constexpr double kMinBlur = 0.25;     // of the pixels themselves
 constexpr int kMaxSteps = 25;
 constexpr double kConverged = 1e-4;    // pixels
 constexpr double kMaxMove = 2.5;       // of a corner, pixels
@@ -165,6 +167,13 @@ Eigen::Vector2d CellSize(const std::array<Eigen::Vector2d, 4>& corners, int cell
   return Eigen::Vector2d(across, along) / (2.0 * cells);
 }
 
+// A raster would pass over edges that lie along it.
+uint32_t Scattered(int x, int y) {
+  uint32_t bits = static_cast<uint32_t>(x) * 0x9e3779b1u ^ static_cast<uint32_t>(y) * 0x85ebca77u;
+  bits = (bits ^ bits >> 15) * 0x2c1b3c6du;
+  return bits ^ bits >> 13;
+}
+
 std::vector<Pixel> PixelsOf(const GrayImage& picture, const Eigen::Vector2d& centre,
                             const Eigen::Matrix3d& print_from_pixel,
                             const std::array<Eigen::Vector2d, 4>& corners, int cells) {
@@ -174,7 +183,10 @@ std::vector<Pixel> PixelsOf(const GrayImage& picture, const Eigen::Vector2d& cen
     high = high.max(corner.array());
   }
   const double margin = 2 + (high - low).maxCoeff() * kReach / cells;
-  const int step = std::max(1, static_cast<int>(std::sqrt((high - low).prod() / kMaxPixels)));
+  const Eigen::Vector2d near_edge = kEdgeReach * CellSize(corners, cells).cwiseInverse();
+  const double edge_share = std::min(1.0, 2 * near_edge.sum());
+  const auto thinning =
+      static_cast<uint32_t>(std::max(1.0, edge_share * (high - low).prod() / kMaxPixels));
   std::vector<Pixel> pixels;
   const auto bounds = [&](double from, double to, double shift, int size) {
     return std::pair(std::max(0, static_cast<int>(std::floor(from - margin + shift))),
@@ -182,11 +194,14 @@ std::vector<Pixel> PixelsOf(const GrayImage& picture, const Eigen::Vector2d& cen
   };
   const auto [x0, x1] = bounds(low.x(), high.x(), centre.x(), picture.width);
   const auto [y0, y1] = bounds(low.y(), high.y(), centre.y(), picture.height);
-  for (int y = y0; y <= y1; y += step) {
-    for (int x = x0; x <= x1; x += step) {
+  for (int y = y0; y <= y1; ++y) {
+    for (int x = x0; x <= x1; ++x) {
       const Eigen::Vector2d place(x + 0.5 - centre.x(), y + 0.5 - centre.y());
       const Eigen::Vector2d print = (print_from_pixel * place.homogeneous()).hnormalized();
       if (print.minCoeff() < -kReach || print.maxCoeff() > cells + kReach) continue;
+      const Eigen::Array2d off_edge = (print.array() - print.array().round()).abs();
+      const bool is_flat = (off_edge > near_edge.array()).all();
+      if (Scattered(x, y) % (is_flat ? kFlatPixels * thinning : thinning) != 0) continue;
       pixels.push_back({place, Linear(picture.At(x, y))});
     }
   }
