@@ -9,11 +9,15 @@ namespace colmap_seapoint {
 
 // In the order in which a reconstruction does it.
 enum class Work : int {
+  kIntake,         // HEIC and RAW decoded; seconds of video looked through
   kPictures,       // SeaPoints of pictures
   kLookAlikes,     // pictures that look like one another
   kPairs,          // matches of pairs
+  kMarkers,        // pictures looked through for coded markers
+  kTiltedViews,    // views from above of pictures that nothing ties to the others
   kRegistration,   // pictures put into a model by COLMAP's mapper
   kRefinement,     // models adjusted and measured again; its steps are of no known number
+  kJoining,        // models tried to be made one
   kDensification,  // steps of the densifier
   kMaps,           // depth maps
   kOther,          // nothing that is planned

@@ -27,12 +27,14 @@ constexpr double kPairsToPictures = 2.5;
 constexpr double kMinPictureSeconds = 0.02;  // of work, that show a pace
 constexpr double kMinRatioSeconds = 0.5;     // for the history
 
-constexpr Work kPlanned[] = {Work::kPictures,     Work::kLookAlikes, Work::kPairs,
-                             Work::kRegistration, Work::kRefinement, Work::kDensification,
-                             Work::kMaps};
+constexpr Work kPlanned[] = {Work::kIntake,        Work::kPictures,   Work::kLookAlikes,
+                             Work::kPairs,         Work::kMarkers,    Work::kTiltedViews,
+                             Work::kRegistration,  Work::kRefinement, Work::kJoining,
+                             Work::kDensification, Work::kMaps};
 
 // A hard survey takes them ten times longer, which says nothing of the machine.
 bool IsMappers(Work work) { return work == Work::kRegistration || work == Work::kRefinement; }
+bool SaysNothingOfMachine(Work work) { return IsMappers(work) || work == Work::kJoining; }
 
 // The mapper's work for a model that has this share of its pictures: it adjusts all of them again
 // and again.
@@ -49,10 +51,13 @@ double TrialsToCome(int trial, int64_t num_pictures) {
 
 }  // namespace
 
-JobEstimate::JobEstimate(const OfWork<WorkCost>& costs, const OfWork<bool>& done_before)
-    : is_over_(done_before) {
+void JobEstimate::Plan(const OfWork<WorkCost>& costs, const OfWork<bool>& done_before) {
+  seconds_before_ = 0;
   for (const Work work : kPlanned) {
     known_[work].cost = costs[work];
+    // What has begun here is judged by what it does here.
+    if (known_[work].num_parts > 0) continue;
+    is_over_[work] = done_before[work];
     const double seconds = static_cast<double>(costs[work].count) * costs[work].seconds_each;
     if (done_before[work]) seconds_before_ += seconds;
   }
@@ -105,7 +110,7 @@ void JobEstimate::FinishPart(double now) {
 double JobEstimate::Pace() const {
   double expected = kPriorSeconds, seconds = kPriorSeconds, pace_of_pictures = 1;
   for (const Work work : kPlanned) {
-    if (IsMappers(work)) continue;
+    if (SaysNothingOfMachine(work)) continue;
     double expected_of_work = known_[work].expected, seconds_of_work = known_[work].seconds;
     if (work == part_.work) {
       expected_of_work += (part_.done - part_.already_done) * known_[work].cost.seconds_each;
@@ -114,6 +119,8 @@ double JobEstimate::Pace() const {
     const double max_pace =
         work == Work::kPairs ? kPairsToPictures * std::max(1.0, pace_of_pictures) : kMaxPace;
     seconds_of_work = std::min(seconds_of_work, max_pace * expected_of_work);
+    // How large a codec's pictures are and how it packs them is not known beforehand.
+    if (work == Work::kIntake) seconds_of_work = std::sqrt(seconds_of_work * expected_of_work);
     if (work == Work::kPictures && expected_of_work > kMinPictureSeconds) {
       pace_of_pictures = seconds_of_work / expected_of_work;
     }

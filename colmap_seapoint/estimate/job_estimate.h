@@ -3,9 +3,11 @@
 //
 // Each kind of work has an expected count and expected seconds each. What is under way is
 // extrapolated from what it has done, the more so the further it is; what is to come is multiplied
-// by the pace of what is done, but for the mapper's: a hard survey takes it ten times longer, and
-// says nothing of the machine. A mapper's trial that leaves pictures over is followed by others:
-// what these take on the average is added, less at the first trial, more at the second.
+// by the pace of what is done and under way, so that a loaded machine is known after some seconds.
+// The mapper's part of it does not count: a hard survey takes it ten times longer, and says nothing
+// of the machine; what pictures and videos are decoded in counts half. A mapper's trial that leaves
+// pictures over is followed by others: what these take on the average is added, less at the first
+// trial, more at the second.
 #pragma once
 
 #include "colmap_seapoint/estimate/work_costs.h"
@@ -14,8 +16,10 @@ namespace colmap_seapoint {
 
 class JobEstimate {
  public:
-  // `done_before`: work that an earlier run has finished. It counts as done, not as time left.
-  JobEstimate(const OfWork<WorkCost>& costs, const OfWork<bool>& done_before);
+  // What is expected from now on, at first and whenever more is known: of videos, how many pictures
+  // they became. What was measured stays. `done_before`: work that an earlier run has finished. It
+  // counts as done, not as time left.
+  void Plan(const OfWork<WorkCost>& costs, const OfWork<bool>& done_before);
 
   // `now`: seconds since the job began, never less than at an earlier call. Counts are taken as
   // they come: more than the total, and a total of 0, are no errors.

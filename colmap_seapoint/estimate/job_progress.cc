@@ -14,14 +14,18 @@ constexpr double kMaxLineSeconds = 20;
 
 }  // namespace
 
-JobProgress::JobProgress(const JobEstimate& estimate) : estimate_(estimate) {
-  SetWorkObserver(this);
-}
+JobProgress::JobProgress() { SetWorkObserver(this); }
 
 JobProgress::~JobProgress() { SetWorkObserver(nullptr); }
 
 double JobProgress::Now() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+double JobProgress::Plan(const OfWork<WorkCost>& costs, const OfWork<bool>& done_before) {
+  std::lock_guard<std::mutex> lock(mutex_);
+  estimate_.Plan(costs, done_before);
+  return estimate_.SecondsLeft(Now());
 }
 
 void JobProgress::Begin(Work work, const std::string& label, int64_t total, int64_t already_done) {

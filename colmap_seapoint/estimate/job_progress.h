@@ -13,7 +13,10 @@ namespace colmap_seapoint {
 // While it lives, all Progress speaks through it.
 class JobProgress : public WorkObserver {
  public:
-  explicit JobProgress(const JobEstimate& estimate);
+  JobProgress();
+  // JobEstimate::Plan(), before the first work and whenever more is known; returns the seconds that
+  // are left then.
+  double Plan(const OfWork<WorkCost>& costs, const OfWork<bool>& done_before);
   ~JobProgress() override;
   JobProgress(const JobProgress&) = delete;
   JobProgress& operator=(const JobProgress&) = delete;

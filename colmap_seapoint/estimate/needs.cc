@@ -90,8 +90,10 @@ std::string TimesText(const OfWork<WorkCost>& costs, const OfWork<bool>& done_be
     }
     if (seconds > 0) stages += (stages.empty() ? "" : ", ") + name + " " + DurationText(seconds);
   };
+  add("decoding", {Work::kIntake});
   add("SeaPoints", {Work::kPictures});
   add("matching", {Work::kLookAlikes, Work::kPairs});
+  add("markers", {Work::kMarkers});
   add("mapping", {Work::kRegistration, Work::kRefinement});
   add("cloud", {Work::kDensification, Work::kMaps});
   return "About " + DurationText(seconds_left) + " on this machine" +

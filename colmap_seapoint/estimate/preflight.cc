@@ -31,8 +31,15 @@ void CheckDisk(const Needs& needs, const Supply& supply, const std::filesystem::
 
 }  // namespace
 
-JobEstimate PlanJob(const JobSize& size, const std::filesystem::path& workspace, bool check_disk,
-                    const OfWork<bool>& done_before) {
+OfWork<WorkCost> CostsHere(const JobSize& size) {
+  OfWork<double> machine;
+  machine.values.fill(1);
+  if (const auto history = HistoryPath()) machine = ReadMachineRatios(*history);
+  return ExpectedCosts(size, machine);
+}
+
+void PlanJob(const JobSize& size, const std::filesystem::path& workspace, bool check_disk,
+             const OfWork<bool>& done_before, JobProgress* progress) {
   const Needs needs = ExpectedNeeds(size);
   const Supply supply = {FreeDiskBytes(workspace), FolderBytes(workspace), MaxMemory()};
   LogInfo(NeedsText(size, needs, supply));
@@ -40,13 +47,8 @@ JobEstimate PlanJob(const JobSize& size, const std::filesystem::path& workspace,
   if (needs.memory_bytes > supply.memory_bytes) {
     LogWarning("memory may be short: close other programs, or give fewer pictures");
   }
-  OfWork<double> machine;
-  machine.values.fill(1);
-  if (const auto history = HistoryPath()) machine = ReadMachineRatios(*history);
-  const OfWork<WorkCost> costs = ExpectedCosts(size, machine);
-  JobEstimate estimate(costs, done_before);
-  LogInfo(TimesText(costs, done_before, estimate.SecondsLeft(0)));
-  return estimate;
+  const OfWork<WorkCost> costs = CostsHere(size);
+  LogInfo(TimesText(costs, done_before, progress->Plan(costs, done_before)));
 }
 
 void RememberJob(JobProgress* progress) {

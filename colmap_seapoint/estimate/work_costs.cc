@@ -8,11 +8,16 @@ namespace {
 
 // CPU seconds, medians of the runs that the costs were measured on: 4 to 3000 pictures of 0.2 to 20
 // megapixels.
+constexpr double kCopiedMegapixelSeconds = 0.08;   // decoded and written as JPEG
+constexpr double kVideoMegapixelSeconds = 0.0045;  // decoded; one frame in ten looked at
 constexpr double kPictureSeconds = 0.003;
 constexpr double kMegapixelSeconds = 0.008;
 constexpr double kLookAlikeSeconds = 0.008;
 constexpr double kLookAlikeGrowth = 4e-6;  // more for each picture that is compared with
 constexpr double kPairSeconds = 0.012;
+constexpr double kMarkerMegapixelSeconds = 0.05;
+constexpr double kTiltedViewSeconds = 0.1;
+constexpr double kJoiningSeconds = 1;
 constexpr double kRegistrationSeconds = 0.09;
 constexpr double kRegistrationGrowth = 2e-5;  // more for each picture of the model
 constexpr double kRefinementSeconds = 0.05;
@@ -39,11 +44,19 @@ OfWork<WorkCost> ExpectedCosts(const JobSize& size, const OfWork<double>& machin
   const auto set = [&](Work work, double count, double seconds_each) {
     costs[work] = {std::llround(count), seconds_each * machine[work]};
   };
+  const auto num_taken_in = static_cast<double>(size.num_copies + size.video_seconds);
+  set(Work::kIntake, num_taken_in,
+      size.decoded_megapixels *
+          (size.num_copies > 0 ? kCopiedMegapixelSeconds : kVideoMegapixelSeconds) /
+          std::max(num_taken_in, 1.0) / threads);
   set(Work::kPictures, n, (kPictureSeconds + kMegapixelSeconds * megapixels) / threads);
   if (size.finds_look_alikes) {
     set(Work::kLookAlikes, n, (kLookAlikeSeconds + kLookAlikeGrowth * n) / threads);
   }
   set(Work::kPairs, static_cast<double>(size.num_pairs), kPairSeconds / threads);
+  set(Work::kMarkers, size.finds_markers ? n : 0, kMarkerMegapixelSeconds * megapixels / threads);
+  set(Work::kTiltedViews, 0, kTiltedViewSeconds / threads);
+  set(Work::kJoining, 0, kJoiningSeconds);
   set(Work::kRegistration, n, kRegistrationSeconds + kRegistrationGrowth * n);
   set(Work::kRefinement, n, kRefinementSeconds);
   const double densified = kDensifiedMegapixelSeconds * std::min(megapixels, kDensifiedMegapixels) +

@@ -23,6 +23,11 @@ struct JobSize {
   int step = 0;           // pixels between samples of the cloud; 0 = about 0.75 million a picture
   bool finds_look_alikes = false;
   bool writes_maps = false;
+  bool finds_markers = false;
+  // To be made into pictures before all else, of one kind or the other.
+  int64_t num_copies = 0;         // pictures in HEIC and RAW
+  int64_t video_seconds = 0;      // all clips together
+  double decoded_megapixels = 0;  // of the copies, or of all frames
   int num_threads = 1;
 };
 
@@ -31,7 +36,8 @@ struct JobSize {
 int64_t ExpectedSequentialPairs(int64_t num_pictures, int overlap, bool finds_look_alikes);
 
 struct WorkCost {
-  int64_t count = 0;        // as its Progress will count; 0: none of it is expected
+  // As its Progress will count. 0: none of it is expected; there may be some all the same.
+  int64_t count = 0;
   double seconds_each = 0;  // wall clock
 };
 

@@ -59,7 +59,7 @@ ExtractedClip ExtractFrames(VideoFile* video, const std::string& label,
               MakeExif(TimeOf(info, chosen.frame.seconds), info.maker, info.model));
   });
   const auto total = static_cast<int64_t>(std::llround(info.duration_seconds));
-  Progress progress("Frames of " + label + ", seconds", total);
+  Progress progress("Frames of " + label + ", seconds", total, 0, Work::kIntake);
   while (const auto frame = video->Next()) {
     chooser.Add(*frame);
     ++extracted.num_frames;

@@ -14,9 +14,9 @@ namespace {
 constexpr size_t kNumCorners = 4;
 // Marks of corners by the detector scatter by this, at best, pixels.
 constexpr double kMinSigma = 0.1;
-// Blur and the pictures' own gradation move opposite edges of a square apart, or together, by
-// this, and so in all pictures, pixels.
-constexpr double kEdgeBias = 0.2;
+// What is left of blur and of the pictures' own gradation moves opposite edges of a square apart,
+// or together, by this, and so in all pictures, pixels.
+constexpr double kEdgeBias = 0.05;
 // Sides and diagonals that differ by more than this share, beyond what their uncertainty explains,
 // are no square's.
 constexpr double kMaxSkew = 0.2;

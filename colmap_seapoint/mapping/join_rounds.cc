@@ -56,8 +56,7 @@ class Joiner {
   }
 
   bool Join(const ColmapDatabase& database, const fs::path& larger, const fs::path& smaller) {
-    JoinedModel joined =
-        JoinModels(database, ReadSparseModel(smaller), ReadSparseModel(larger), options_);
+    JoinedModel joined = TryToJoin(database, larger, smaller);
     const std::string line = "(" + Contents(larger) + ") and (" + Contents(smaller) +
                              "): " + (joined.model ? "joined " : "apart: ") + joined.outcome;
     report_ += line + "\n";
@@ -67,6 +66,12 @@ class Joiner {
     joined.model.reset();
     polish_(larger);
     return true;
+  }
+
+  JoinedModel TryToJoin(const ColmapDatabase& database, const fs::path& larger,
+                        const fs::path& smaller) const {
+    const Progress progress("Two models tried to be joined", 1, 0, Work::kJoining);
+    return JoinModels(database, ReadSparseModel(smaller), ReadSparseModel(larger), options_);
   }
 
   void Drop(size_t j) {

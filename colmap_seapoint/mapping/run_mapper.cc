@@ -64,6 +64,7 @@ size_t NumPosedWell(const Trial& trial) {
 
 bool IsBetter(const Trial& a, const Trial& b) {
   if (NumPosedWell(a) != NumPosedWell(b)) return NumPosedWell(a) > NumPosedWell(b);
+  if (a.lenses_are_sound != b.lenses_are_sound) return a.lenses_are_sound;
   return a.worst_error < b.worst_error;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/database_copy.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/mapping/lens_pilot.h"
 #include "colmap_seapoint/tracks/thinned_database.h"
@@ -20,6 +21,8 @@ constexpr char kNumBeginnings[] = "Mapper.init_num_trials";
 constexpr char kRefineDistortion[] = "Mapper.ba_refine_extra_params";
 constexpr char kGlobalRefineDistortion[] = "GlobalMapper.ba_refine_extra_params";
 constexpr char kRefineFocal[] = "Mapper.ba_refine_focal_length";
+constexpr char kMinInitialAngle[] = "Mapper.init_min_tri_angle";
+constexpr double kWideFocal = 0.7;  // of the longer side: 71 degrees
 
 // Observations that the last adjustment takes in, whose memory grows with them; a picture has a few
 // thousand, and several hundred hold it as well.
@@ -112,6 +115,44 @@ TrialPlan ThinnedPlan(const ColmapProgram& colmap, const MapperJob& job, const f
   return plan;
 }
 
+// Whether nothing is known of any lens, and there is no pilot that would tell.
+bool GuessesLens(const MapperJob& job) {
+  if (job.lens != LensRule::kFind || job.pictures.size() >= kMinPicturesOfPilot) return false;
+  const ColmapDatabase database(job.database_path, ColmapDatabase::Mode::kReadOnly,
+                                ColmapDatabase::Check::kNone);
+  const auto cameras = ReadCameras(database);
+  return !cameras.empty() && std::none_of(cameras.begin(), cameras.end(), [](const auto& camera) {
+    return camera.second.has_prior_focal_length;
+  });
+}
+
+// All matches, with a wide lens that is held until the adjustment of ours frees it. COLMAP's guess
+// is a field of view of 45 degrees; action cameras have 70 and more, and from so far off few
+// pictures lead the mapper to any focal length.
+TrialPlan WideLensPlan(const ColmapProgram& colmap, const MapperJob& job, const fs::path& folder) {
+  TrialPlan plan = PlainPlan(job, "_wide_lens", job.first_round);
+  plan.options[kRefineFocal] = "0";
+  // What lies across a pair's wide view is farther off than COLMAP asks for.
+  if (colmap.HasMapperOption(kMinInitialAngle)) plan.options.emplace(kMinInitialAngle, "8");
+  plan.prepare = [&job, folder](TrialPlan* prepared) {
+    fs::create_directories(folder);
+    prepared->database_path = folder / "wide_lens.db";
+    CopyDatabase(ColmapDatabase(job.database_path, ColmapDatabase::Mode::kReadOnly,
+                                ColmapDatabase::Check::kNone),
+                 prepared->database_path);
+    ColmapDatabase database(prepared->database_path, ColmapDatabase::Mode::kReadWrite,
+                            ColmapDatabase::Check::kNone);
+    for (const auto& [id, camera] : ReadCameras(database)) {
+      const double focal = kWideFocal * std::max(camera.width, camera.height);
+      Camera wide = MakeCamera(camera.model, focal, camera.width, camera.height);
+      wide.camera_id = id;
+      SetCalibration(&database, wide);
+    }
+    database.Finish();
+  };
+  return plan;
+}
+
 }  // namespace
 
 std::vector<TrialPlan> PlanFirstRound(const ColmapProgram& colmap, const MapperJob& job,
@@ -126,6 +167,8 @@ std::vector<TrialPlan> PlanFirstRound(const ColmapProgram& colmap, const MapperJ
   if (job.initial_pair_round) add(PlainPlan(job, "_initial_pair", *job.initial_pair_round));
   add(PlainPlan(job, "", job.first_round));
   plans.back().must_succeed = true;
+  if (GuessesLens(job) && colmap.HasMapperOption(kRefineFocal))
+    add(WideLensPlan(colmap, job, folder));
   // Where a held distortion may be what keeps pictures out.
   if (job.lens == LensRule::kFind) {
     plans.push_back(PlainPlan(job, "_free_distortion", job.first_round));

@@ -20,7 +20,7 @@ struct TrialPlan {
   std::filesystem::path triangulation_path;  // the database whose matches become the points
   MapperOptions options;
   bool holds_distortion = false;  // by the options
-  // It differs from the one before it in nothing but that the distortion is free: no other trial
+  // It differs from COLMAP's plain trial in nothing but that the distortion is free: no other trial
   // where that one could not hold it.
   bool frees_distortion = false;
   bool must_succeed = false;                // when no trial before it found a model
@@ -28,7 +28,8 @@ struct TrialPlan {
 };
 
 // The global mapper, thinned matches, an initial pair of ours (where the job asks for them), COLMAP
-// as it is, with a free distortion, and with small models dropped. `folder`: exists; what thinned
+// as it is, with a wide lens where nothing is known of the lens, with a free distortion, and with
+// small models dropped. `folder`: exists; what thinned
 // matches need is put there when their turn comes. The plans refer to `colmap` and `job`.
 std::vector<TrialPlan> PlanFirstRound(const ColmapProgram& colmap, const MapperJob& job,
                                       const std::filesystem::path& folder);

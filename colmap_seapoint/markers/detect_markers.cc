@@ -9,6 +9,7 @@
 #include <string>
 #include <tuple>
 
+#include "colmap_seapoint/markers/fit_marker.h"
 #include "colmap_seapoint/markers/marker_codes.h"
 
 namespace colmap_seapoint {
@@ -131,6 +132,9 @@ std::vector<DetectedMarker> DetectMarkers(const GrayImage& picture,
     return OrderOf(a) < OrderOf(b);
   });
   DropFalseMirrors(&markers);
+  for (DetectedMarker& marker : markers) {
+    if (const auto corners = FitCorners(picture, marker)) marker.corners = *corners;
+  }
   return markers;
 }
 

@@ -13,7 +13,7 @@
 namespace colmap_seapoint {
 
 // Raise it whenever the same picture gives other markers than before.
-inline constexpr char kMarkerVersion[] = "1";
+inline constexpr char kMarkerVersion[] = "2";
 
 struct DetectedMarker {
   MarkerName name;
@@ -29,8 +29,9 @@ struct DetectedMarker {
 // All markers of the families that are whole in the picture with some white around them, sorted by
 // name and place, the mirrored ones last; the same marker may come more than once. One wrong bit is
 // mended, in 4x4 and 5x5 markers none (NumMendedBits). Markers of about 16 pixels a side are
-// found in good water, of 25 in bad. Single-threaded; the same for any machine. Cost: about 0.05
-// seconds a megapixel; 12 bytes a pixel of memory.
+// found in good water, of 25 in bad. Corners are fitted (fit_marker.h) wherever that can be.
+// Single-threaded; the same for any machine. Cost: about 0.05 seconds a megapixel; 12 bytes a pixel
+// of memory.
 std::vector<DetectedMarker> DetectMarkers(const GrayImage& picture,
                                           const std::vector<MarkerFamily>& families);
 

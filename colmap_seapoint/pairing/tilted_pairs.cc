@@ -7,6 +7,7 @@
 
 #include "colmap_seapoint/base/camera.h"
 #include "colmap_seapoint/base/parallel.h"
+#include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/io/colmap/database_features.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/colmap/database_matches.h"
@@ -34,6 +35,21 @@ struct PairRows {
 using Pictures = std::map<uint32_t, Picture>;
 using Found = std::map<ImagePair, FeatureMatches>;  // verified, between the views' points
 
+// Steps of one kind, counted as they are done, in their order.
+template <typename Result, typename Make, typename Take>
+void CountedSteps(const TiltedPairsJob& job, const char* what, size_t count, const Make& make,
+                  const Take& take) {
+  Progress progress(what, static_cast<int64_t>(count), 0, Work::kTiltedViews);
+  const int threads = EffectiveNumThreads(job.num_threads);
+  OrderedPipeline<Result>(
+      threads, static_cast<int64_t>(count), 2 * threads,
+      [&](int64_t i) { return make(static_cast<size_t>(i)); },
+      [&](int64_t i, Result&& result) {
+        take(static_cast<size_t>(i), std::move(result));
+        progress.Update(i + 1);
+      });
+}
+
 Pictures ViewsOf(const TiltedPairsJob& job, const ColmapDatabase& database) {
   const std::map<uint32_t, Camera> cameras = ReadCameras(database);
   std::vector<std::pair<uint32_t, Picture>> pictures;
@@ -41,30 +57,33 @@ Pictures ViewsOf(const TiltedPairsJob& job, const ColmapDatabase& database) {
     if (job.groups.count(image.image_id) == 0) continue;
     pictures.push_back({image.image_id, {image.name, cameras.at(image.camera_id), {}}});
   }
-  ParallelFor(job.num_threads, static_cast<int64_t>(pictures.size()), [&](int64_t i) {
-    Picture& picture = pictures[static_cast<size_t>(i)].second;
-    const MaskedPicture read = job.read(picture.name);
-    picture.view =
-        ExtractTiltedView(read.picture, read.mask, picture.camera, job.tilt_deg, job.extraction);
-  });
+  CountedSteps<TiltedView>(
+      job, "Views from above", pictures.size(),
+      [&](size_t i) {
+        const Picture& picture = pictures[i].second;
+        const MaskedPicture read = job.read(picture.name);
+        return ExtractTiltedView(read.picture, read.mask, picture.camera, job.tilt_deg,
+                                 job.extraction);
+      },
+      [&](size_t i, TiltedView&& view) { pictures[i].second.view = std::move(view); });
   return Pictures(pictures.begin(), pictures.end());
 }
 
 void MatchViews(const TiltedPairsJob& job, const Pictures& pictures,
                 const std::vector<ImagePair>& pairs, Found* found) {
-  std::vector<FeatureMatches> matches(pairs.size());
-  ParallelFor(job.num_threads, static_cast<int64_t>(pairs.size()), [&](int64_t i) {
-    const auto& [id1, id2] = pairs[static_cast<size_t>(i)];
-    const TiltedView& view1 = pictures.at(id1).view;
-    const TiltedView& view2 = pictures.at(id2).view;
-    if (view1.features.points.empty() || view2.features.points.empty()) return;
-    matches[static_cast<size_t>(i)] =
-        MatchFeatures(view1.camera, view1.features, view2.camera, view2.features, job.matching)
+  CountedSteps<FeatureMatches>(
+      job, "Matches of views from above", pairs.size(),
+      [&](size_t i) {
+        const TiltedView& view1 = pictures.at(pairs[i].first).view;
+        const TiltedView& view2 = pictures.at(pairs[i].second).view;
+        if (view1.features.points.empty() || view2.features.points.empty()) return FeatureMatches();
+        return MatchFeatures(view1.camera, view1.features, view2.camera, view2.features,
+                             job.matching)
             .geometry.inliers;
-  });
-  for (size_t i = 0; i < pairs.size(); ++i) {
-    if (matches[i].size() >= kMinMatches) (*found)[pairs[i]] = std::move(matches[i]);
-  }
+      },
+      [&](size_t i, FeatureMatches&& matches) {
+        if (matches.size() >= kMinMatches) (*found)[pairs[i]] = std::move(matches);
+      });
 }
 
 // Pairs of different groups first; then, of the pictures that those tied, their pairs within.

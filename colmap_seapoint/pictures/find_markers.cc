@@ -42,7 +42,7 @@ std::vector<MarkerSighting> FindMarkers(const std::filesystem::path& image_path,
   const int threads = EffectiveNumThreads(num_threads);
   const auto count = static_cast<int64_t>(names.size());
   std::vector<MarkerSighting> sightings;
-  Progress progress("Pictures looked through for markers", count);
+  Progress progress("Pictures looked through for markers", count, 0, Work::kMarkers);
   OrderedPipeline<Found>(
       threads, count, 2 * threads,
       [&](int64_t i) { return FindIn(image_path / names[static_cast<size_t>(i)], families); },

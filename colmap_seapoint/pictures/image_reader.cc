@@ -190,6 +190,14 @@ void LeaveOutOtherFiles(const FolderListing& listing, RunReport* report) {
              "it is a video: give it to automatic_reconstructor as an --image_path of its own",
              report);
   }
+  for (const std::string& name : listing.known_links) {
+    LogInfo(name +
+            " is a link to a folder that is read anyway, or to one that holds it: it is not "
+            "followed");
+  }
+  for (const std::string& name : listing.dead_links) {
+    LeaveOut(name, "is a link that leads nowhere: is the disk there that it names?", report);
+  }
   if (!listing.twins.empty()) {
     LogInfo(std::to_string(listing.twins.size()) + " files (" + ExtensionsOf(listing.twins) +
             ") show the same as a picture of their name, which is used");

@@ -70,13 +70,11 @@ Stage DatabaseStage(const Options& options, const std::vector<ReadablePicture>& 
   return {"database", kMatchingVersion, text, ""};
 }
 
-JobSize SizeOf(const Options& options, const std::vector<ReadablePicture>& pictures) {
-  const bool matches_all_pairs = MatchesAllPairs(options, pictures.size());
+JobSize SizeOf(const Options& options, int64_t num_pictures, double megapixels) {
+  const bool matches_all_pairs = MatchesAllPairs(options, static_cast<size_t>(num_pictures));
   JobSize size;
-  size.num_pictures = static_cast<int64_t>(pictures.size());
-  for (const ReadablePicture& picture : pictures) {
-    size.megapixels += 1e-6 * picture.info.width * picture.info.height;
-  }
+  size.num_pictures = num_pictures;
+  size.megapixels = megapixels;
   size.finds_look_alikes = !matches_all_pairs && options.pairs.loop_detection;
   size.num_pairs = matches_all_pairs
                        ? size.num_pictures * (size.num_pictures - 1) / 2
@@ -84,7 +82,26 @@ JobSize SizeOf(const Options& options, const std::vector<ReadablePicture>& pictu
                                                  size.finds_look_alikes);
   size.step = options.densification.step;
   size.writes_maps = options.densification.write_maps;
+  size.finds_markers = !FamiliesToFind(options.scale).empty();
   size.num_threads = EffectiveNumThreads(options.run.num_threads);
+  return size;
+}
+
+JobSize SizeOf(const Options& options, const std::vector<ReadablePicture>& pictures) {
+  double megapixels = 0;
+  for (const ReadablePicture& picture : pictures) {
+    megapixels += 1e-6 * picture.info.width * picture.info.height;
+  }
+  return SizeOf(options, static_cast<int64_t>(pictures.size()), megapixels);
+}
+
+// Before the pictures are read, and where they have to be made of something else first.
+JobSize SizeBeforeIntake(const Options& options, const fs::path& given) {
+  const IntakeSize intake = ExpectIntake(given);
+  JobSize size = SizeOf(options, intake.num_pictures, intake.megapixels);
+  size.num_copies = intake.num_copies;
+  size.video_seconds = intake.video_seconds;
+  size.decoded_megapixels = intake.decoded_megapixels;
   return size;
 }
 
@@ -352,13 +369,15 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& giv
   RunReport report = StartReport("automatic_reconstructor", options, options.run);
   report.options.insert(report.options.end(), options.mapper.begin(), options.mapper.end());
 
+  JobProgress progress;
+  progress.Plan(CostsHere(SizeBeforeIntake(options, workspace.images)), {});
   TakeInPictures({options.frames, options.run.num_threads}, &workspace, &state, &report);
   plan.job.image_path = workspace.images;
   const PictureSet pictures = ReadPictures(options, workspace);
   CheckScaleNames(options.scale, NamesOf(pictures));
   const Stage begin = DatabaseStage(options, pictures.readable);
-  JobProgress progress(PlanJob(SizeOf(options, pictures.readable), workspace.root,
-                               options.check_disk, DoneBefore(begin, state)));
+  PlanJob(SizeOf(options, pictures.readable), workspace.root, options.check_disk,
+          DoneBefore(begin, state), &progress);
   ColmapDatabase database =
       OpenWorkspaceDatabase(workspace.database, pictures.readable, options.reader, begin, &state);
   const Stage second_chance = SecondChanceStage(options, begin);

@@ -8,6 +8,7 @@
 
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/mapping/adjust_lens.h"
 #include "colmap_seapoint/mapping/mapper_process.h"
 #include "tests/io/test_files.h"
@@ -348,6 +349,29 @@ TEST_F(RunMapperTest, ALensThatIsNotSoundIsDoubtfulToo) {
   colmap_.Leaves(kMapper, 2, "0", survey_);
   Run();
   ASSERT_EQ(colmap_.NumCalls(kMapper), 2);
+  EXPECT_LT(LargestDifference(ReadSparseModel(job_.output_path / "0").cameras.at(1), ExactLens()),
+            0.01);
+}
+
+// Where nothing is known of the lens, the guess may be too far off: another one is tried, and a
+// lens that is sound counts among as many pictures, whatever the errors.
+TEST_F(RunMapperTest, AWideLensIsTriedWhereNothingIsKnownOfIt) {
+  job_.lens = LensRule::kFind;
+  colmap_.SetHelp(MapperHelp("COLMAP 3.8", {"Mapper.num_threads", kRefine, kRefineFocal}));
+  {
+    ColmapDatabase database(job_.database_path, ColmapDatabase::Mode::kReadWrite);
+    AddCamera(&database, ExactLens());
+    database.Finish();
+  }
+  Camera lens = ExactLens();
+  lens.params[2] += 90;
+  colmap_.Leaves(kMapper, 1, "0", Disturbed(ExactSurvey(lens, 5)));
+  colmap_.Leaves(kMapper, 2, "0", survey_);
+  Run();
+  ASSERT_EQ(colmap_.NumCalls(kMapper), 2);
+  EXPECT_NE(colmap_.Value(kMapper, 1, kRefineFocal), "0");
+  EXPECT_EQ(colmap_.Value(kMapper, 2, kRefineFocal), "0");
+  EXPECT_EQ(fs::path(colmap_.Value(kMapper, 2, "database_path")).filename(), "wide_lens.db");
   EXPECT_LT(LargestDifference(ReadSparseModel(job_.output_path / "0").cameras.at(1), ExactLens()),
             0.01);
 }

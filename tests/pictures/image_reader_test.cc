@@ -60,6 +60,20 @@ TEST_F(ImageReaderTest, ListsAllPicturesBytewise) {
   EXPECT_TRUE(report_.left_out.empty());
 }
 
+TEST_F(ImageReaderTest, LinksThatAreNotFollowedAreNamed) {
+  AddPicture("sub/a.png");
+  std::filesystem::create_directory_symlink(dir_ / "sub", dir_ / "zagain");
+  std::filesystem::create_directory_symlink(dir_.Path(), dir_ / "sub/up");
+  std::filesystem::create_symlink(dir_ / "unplugged", dir_ / "disk");
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(ListPictures(dir_.Path(), "", &report_), (Names{"sub/a.png"}));
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("sub/up is a link to a folder that is read anyway"), std::string::npos);
+  EXPECT_NE(said.find("zagain is a link to a folder that is read anyway"), std::string::npos);
+  ASSERT_EQ(report_.left_out.size(), 1u);
+  EXPECT_EQ(report_.left_out[0].name, "disk");
+}
+
 TEST_F(ImageReaderTest, ListsTheGivenPicturesOnce) {
   for (const char* name : {"a.png", "b.png", "c.png"}) AddPicture(name);
   WriteBytes(dir_ / "list.txt", "c.png\n# a comment\n\na.png\nc.png\n");

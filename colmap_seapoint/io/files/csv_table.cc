@@ -18,7 +18,36 @@ std::string Trim(const std::string& text) {
   return begin < end ? std::string(begin, end) : std::string();
 }
 
-std::vector<std::string> SplitFields(const std::string& line) {
+// What the fields of a table are separated by: commas; semicolons or tabs where these come first in
+// its header, as spreadsheets of countries that write decimal commas have it.
+char SeparatorOf(const std::string& header) {
+  std::string bare;
+  bool is_quoted = false;
+  for (const char c : header) {
+    if (c == '"') is_quoted = !is_quoted;
+    if (!is_quoted) bare += c;
+  }
+  for (const char separator : {';', '\t'}) {
+    const bool comes_first = bare.find(separator) < bare.find(',');
+    if (comes_first) return separator;
+  }
+  return ',';
+}
+
+// Where no comma separates, one in a number or a time is a decimal one.
+void MendDecimalComma(std::string* field) {
+  const size_t comma = field->find(',');
+  if (comma == std::string::npos || comma == 0 || comma + 1 == field->size()) return;
+  const auto is_digit = [&](size_t i) {
+    return std::isdigit(static_cast<unsigned char>((*field)[i])) != 0;
+  };
+  const bool is_number = field->find_first_not_of("0123456789+-.,:/ eETZ") == std::string::npos;
+  if (is_number && field->rfind(',') == comma && is_digit(comma - 1) && is_digit(comma + 1)) {
+    (*field)[comma] = '.';
+  }
+}
+
+std::vector<std::string> SplitFields(const std::string& line, char separator) {
   std::vector<std::string> fields(1);
   bool is_quoted = false;
   for (size_t i = 0; i < line.size(); ++i) {
@@ -26,13 +55,16 @@ std::vector<std::string> SplitFields(const std::string& line) {
       fields.back() += line[++i];
     } else if (line[i] == '"') {
       is_quoted = !is_quoted;
-    } else if (line[i] == ',' && !is_quoted) {
+    } else if (line[i] == separator && !is_quoted) {
       fields.emplace_back();
     } else {
       fields.back() += line[i];
     }
   }
-  for (std::string& field : fields) field = Trim(field);
+  for (std::string& field : fields) {
+    field = Trim(field);
+    if (separator != ',') MendDecimalComma(&field);
+  }
   return fields;
 }
 
@@ -68,19 +100,22 @@ CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& opti
   if (stream == nullptr) throw Error(path.string(), "there is no such file", "check " + option);
   CsvTable table;
   std::string line;
+  char separator = ',';
   for (int number = 1; std::getline(*stream, line); ++number) {
     if (number == 1 && line.rfind("\xef\xbb\xbf", 0) == 0) line.erase(0, 3);
-    line = Trim(line);
-    if (line.empty() || line[0] == '#') continue;
+    const std::string text = Trim(line);
+    if (text.empty() || text[0] == '#') continue;
     const std::string where = path.string() + ":" + std::to_string(number);
-    std::vector<std::string> fields = SplitFields(line);
+    if (table.header_where.empty()) separator = SeparatorOf(line);
+    std::vector<std::string> fields = SplitFields(line, separator);
     if (!table.header_where.empty()) {
       table.rows.push_back({where, std::move(fields)});
       continue;
     }
     table.header_where = where;
-    table.header_text = line;
-    for (const std::string& field : fields) {
+    table.header_text = text;
+    for (std::string& field : fields) {
+      field.erase(std::remove(field.begin(), field.end(), ','), field.end());
       table.header += (table.header.empty() ? "" : ",") + Lower(field);
     }
   }

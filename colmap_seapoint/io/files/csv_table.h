@@ -1,4 +1,5 @@
-// Comma-separated tables that a user brings: navigation logs, scale bars, marked targets.
+// Tables that a user brings, separated by commas, semicolons or tabs: navigation logs, scale bars,
+// marked targets.
 #pragma once
 
 #include <filesystem>
@@ -19,9 +20,10 @@ struct CsvTable {
   std::vector<CsvRow> rows;  // after the header
 };
 
-// Fields with a comma stand in double quotes ("" is a quote there); blank lines and lines that
-// start with '#' are skipped, as is the mark that spreadsheets put in front. Throws Error when the
-// file cannot be read; `option` is the one to check.
+// The header says what separates the fields: commas, else semicolons or tabs; a comma in a number
+// is a decimal one then. Fields with a separator stand in double quotes ("" is a quote there);
+// blank lines and lines that start with '#' are skipped, as is the mark that spreadsheets put in
+// front. Throws Error when the file cannot be read; `option` is the one to check.
 CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& option);
 
 // The text as a field of such a table: in quotes where it holds a comma or a quote.

@@ -1,10 +1,12 @@
 #include "colmap_seapoint/io/image/image_exif.h"
 
+#include <charconv>
 #include <cmath>
 #include <exiv2/exiv2.hpp>
 #include <locale>
 #include <new>
 #include <sstream>
+#include <utility>
 
 #include "colmap_seapoint/io/image/image_codecs.h"
 
@@ -64,7 +66,7 @@ std::optional<double> Angle(const Exiv2::ExifData& exif, const char* key) {
   return *degrees + Number(exif, key, 1).value_or(0) / 60 + Number(exif, key, 2).value_or(0) / 3600;
 }
 
-std::optional<GeoPosition> Gps(const Exiv2::ExifData& exif) {
+std::optional<GeoPosition> GpsOfExif(const Exiv2::ExifData& exif) {
   const auto latitude = Angle(exif, "Exif.GPSInfo.GPSLatitude");
   const auto longitude = Angle(exif, "Exif.GPSInfo.GPSLongitude");
   if (!latitude || !longitude) return std::nullopt;
@@ -86,20 +88,60 @@ struct Metadata {
   Exiv2::XmpData xmp;
 };
 
-// The value of the property of that name, whatever its namespace: makers have their own. "+39.80",
-// "12.5 m" and "25/2" are numbers.
-std::optional<double> XmpNumber(const Exiv2::XmpData& xmp, const std::string& name) {
+// The value of the property of that name, whatever its namespace: makers have their own. "": none.
+std::string XmpText(const Exiv2::XmpData& xmp, const std::string& name) {
   for (const Exiv2::Xmpdatum& datum : xmp) {
-    if (datum.tagName() != name) continue;
-    std::istringstream text(datum.toString());
-    text.imbue(std::locale::classic());
-    double value = 0, divisor = 1;
-    char slash = 0;
-    if (!(text >> value)) return std::nullopt;
-    if (text >> slash && slash == '/' && text >> divisor && divisor != 0) value /= divisor;
-    return std::isfinite(value) ? std::optional(value) : std::nullopt;
+    if (datum.tagName() == name) return datum.toString();
+  }
+  return {};
+}
+
+// "+39.80", "12.5 m" and "25/2" are numbers.
+std::optional<double> XmpNumber(const Exiv2::XmpData& xmp, const std::string& name) {
+  std::istringstream text(XmpText(xmp, name));
+  text.imbue(std::locale::classic());
+  double value = 0, divisor = 1;
+  char slash = 0;
+  if (!(text >> value)) return std::nullopt;
+  if (text >> slash && slash == '/' && text >> divisor && divisor != 0) value /= divisor;
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+// "43,6.125N" and "43,6,7.5S" as XMP's specification writes them, "+43.102" as drones do. Streams
+// would take the E of the east for that of an exponent.
+std::optional<double> XmpAngle(const Exiv2::XmpData& xmp, const std::string& name) {
+  const std::string text = XmpText(xmp, name);
+  const char *next = text.data(), *const end = next + text.size();
+  if (next != end && *next == '+') ++next;
+  double angle = 0;
+  for (double unit = 1;; unit /= 60) {
+    double part = 0;
+    const auto number = std::from_chars(next, end, part);
+    if (number.ec != std::errc()) return std::nullopt;
+    angle += unit * part;
+    next = number.ptr;
+    if (next == end || *next != ',') break;
+    ++next;
+  }
+  return next != end && (*next == 'S' || *next == 'W') ? -angle : angle;
+}
+
+std::optional<GeoPosition> GpsOfXmp(const Exiv2::XmpData& xmp) {
+  for (const auto& [latitude_name, longitude_name] :
+       {std::pair("GPSLatitude", "GPSLongitude"), std::pair("GpsLatitude", "GpsLongitude"),
+        std::pair("GpsLatitude", "GpsLongtitude")}) {  // as a maker's firmware spells it
+    const auto latitude = XmpAngle(xmp, latitude_name), longitude = XmpAngle(xmp, longitude_name);
+    if (!latitude || !longitude) continue;
+    const GeoPosition gps = {*latitude, *longitude, 0};
+    if (IsLegal(gps)) return gps;
   }
   return std::nullopt;
+}
+
+std::optional<double> XmpAltitude(const Exiv2::XmpData& xmp) {
+  const auto altitude = XmpNumber(xmp, "GPSAltitude");
+  if (!altitude) return XmpNumber(xmp, "AbsoluteAltitude");
+  return XmpNumber(xmp, "GPSAltitudeRef") == 1.0 ? -*altitude : *altitude;
 }
 
 CaptureHeights Heights(const Metadata& metadata) {
@@ -112,7 +154,7 @@ CaptureHeights Heights(const Metadata& metadata) {
   if (heights.altitude && Number(metadata.exif, "Exif.GPSInfo.GPSAltitudeRef").value_or(0) == 1) {
     heights.altitude = -*heights.altitude;
   }
-  if (!heights.altitude) heights.altitude = XmpNumber(metadata.xmp, "AbsoluteAltitude");
+  if (!heights.altitude) heights.altitude = XmpAltitude(metadata.xmp);
   heights.above_start = XmpNumber(metadata.xmp, "RelativeAltitude");
   return heights;
 }
@@ -134,8 +176,12 @@ ExifInfo InfoOf(const Metadata& metadata) {
   info.camera = CameraOf(exif);
   const double orientation = Number(exif, "Exif.Image.Orientation").value_or(1);
   if (orientation >= 1 && orientation <= 8) info.orientation = static_cast<int>(orientation);
-  info.gps = Gps(exif);
   info.heights = Heights(metadata);
+  info.gps = GpsOfExif(exif);
+  if (!info.gps) {
+    info.gps = GpsOfXmp(metadata.xmp);
+    if (info.gps) info.gps->altitude_m = info.heights.altitude.value_or(0);
+  }
   info.taken = Taken(exif);
   return info;
 }

@@ -64,10 +64,17 @@ class FolderWalk {
       const std::filesystem::path& path = entry.path();
       std::error_code ignored;
       if (path.filename().string().front() == '.') continue;
+      const std::string name = path.lexically_relative(root_).generic_string();
       if (entry.is_directory(ignored)) {
-        if (!entry.is_symlink(ignored) || IsNew(path)) Walk(path);
+        if (!entry.is_symlink(ignored) || IsNew(path)) {
+          Walk(path);
+        } else {
+          listing_.known_links.push_back(name);
+        }
       } else if (entry.is_regular_file(ignored)) {
-        AddFile(path, path.lexically_relative(root_).generic_string(), &listing_);
+        AddFile(path, name, &listing_);
+      } else if (entry.is_symlink(ignored) && !entry.exists(ignored)) {
+        listing_.dead_links.push_back(name);
       }
     }
   }

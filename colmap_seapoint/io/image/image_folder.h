@@ -26,6 +26,8 @@ struct FolderListing {
   std::vector<std::string> twins;   // RAW, HEIC or MOV beside a picture of the same name: the same
                                     // shot, which that picture shows
   std::vector<std::string> others;  // kOther, and what cannot be copied under its name
+  // Links to folders that are listed anyway, or hold one that is; and links that lead nowhere.
+  std::vector<std::string> known_links, dead_links;
 };
 
 // Of the folder and all below it. Links to folders are followed, each folder once: none where they

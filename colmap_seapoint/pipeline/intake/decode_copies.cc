@@ -94,7 +94,8 @@ void DecodeAll(const fs::path& source, int num_threads, OutputFolder* folder, Wo
   std::vector<std::string> names;
   for (const Copy& copy : *copies) names.push_back(copy.name);
   folder->Claim(names);
-  Progress progress("HEIC and RAW pictures decoded", static_cast<int64_t>(copies->size()));
+  Progress progress("HEIC and RAW pictures decoded", static_cast<int64_t>(copies->size()), 0,
+                    Work::kIntake);
   for (size_t begin = 0; begin < copies->size(); begin += kBatch) {
     const size_t end = std::min(copies->size(), begin + kBatch);
     ParallelFor(num_threads, static_cast<int64_t>(end - begin), [&](int64_t i) {

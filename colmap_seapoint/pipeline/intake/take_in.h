@@ -12,6 +12,16 @@ namespace colmap_seapoint {
 // Raise it whenever the same video and options give other frames than before.
 inline constexpr char kFrameSelectionVersion[] = "1";
 
+// What is to be taken in: seconds of video, or copies; and how many pictures there will be, and how
+// large, by a guess: reading them tells. Nothing of what cannot be read, which TakeInPictures says.
+struct IntakeSize {
+  int64_t num_copies = 0, video_seconds = 0;
+  double decoded_megapixels = 0;
+  int64_t num_pictures = 0;
+  double megapixels = 0;  // of all these pictures
+};
+IntakeSize ExpectIntake(const std::filesystem::path& given);
+
 struct TakeInOptions {
   FrameSelectionOptions frames;
   int num_threads = -1;

@@ -44,6 +44,19 @@ void AddXmp(const std::filesystem::path& path,
   image->writeMetadata();
 }
 
+// Of XMP's own namespace for EXIF's tags.
+void AddXmpGps(const std::filesystem::path& path, const std::string& latitude,
+               const std::string& longitude) {
+  Exiv2::XmpParser::initialize();
+  const auto image = Exiv2::ImageFactory::open(path.string());
+  image->readMetadata();
+  image->xmpData()["Xmp.exif.GPSLatitude"] = latitude;
+  image->xmpData()["Xmp.exif.GPSLongitude"] = longitude;
+  image->xmpData()["Xmp.exif.GPSAltitude"] = "25/2";
+  image->xmpData()["Xmp.exif.GPSAltitudeRef"] = "1";
+  image->writeMetadata();
+}
+
 TEST(PictureFile, HashAndPixelsComeFromTheSameBytes) {
   const TempDir dir;
   const auto path = dir / "a.png";
@@ -300,6 +313,37 @@ TEST(ImageInfo, HeightsAndTime) {
   EXPECT_EQ(info.taken, "2024:05:01 12:00:00");
   AddExif(dir / "a.jpg", {{"Exif.Photo.SubSecTimeOriginal", "25"}});
   EXPECT_EQ(ReadImageInfo(dir / "a.jpg").taken, "2024:05:01 12:00:00.25");
+}
+
+TEST(ImageInfo, APositionInXmpAlone) {
+  const TempDir dir;
+  WriteImage(dir / "a.jpg", MakeColor(40, 30));
+  AddXmpGps(dir / "a.jpg", "43,30.6S", "5,15,0W");
+  auto gps = ReadImageInfo(dir / "a.jpg").gps;
+  ASSERT_TRUE(gps);
+  EXPECT_NEAR(gps->latitude_deg, -43.51, 1e-9);
+  EXPECT_NEAR(gps->longitude_deg, -5.25, 1e-9);
+  EXPECT_NEAR(gps->altitude_m, -12.5, 1e-9);
+  AddXmpGps(dir / "a.jpg", "43,30,36N", "5,15.3E");
+  gps = ReadImageInfo(dir / "a.jpg").gps;
+  EXPECT_NEAR(gps->latitude_deg, 43.51, 1e-9);
+  EXPECT_NEAR(gps->longitude_deg, 5.255, 1e-9);
+  AddXmpGps(dir / "a.jpg", "95,0,0N", "5,15,0E");
+  EXPECT_FALSE(ReadImageInfo(dir / "a.jpg").gps);
+  AddXmpGps(dir / "a.jpg", "north", "");
+  EXPECT_FALSE(ReadImageInfo(dir / "a.jpg").gps);
+  WriteImage(dir / "b.jpg", MakeColor(40, 30));
+  AddXmp(dir / "b.jpg",
+         {{"GpsLatitude", "+43.51"}, {"GpsLongtitude", "-5.25"}, {"WaterDepth", "12.5"}});
+  const ImageInfo info = ReadImageInfo(dir / "b.jpg");
+  ASSERT_TRUE(info.gps);
+  EXPECT_NEAR(info.gps->latitude_deg, 43.51, 1e-9);
+  EXPECT_NEAR(info.gps->longitude_deg, -5.25, 1e-9);
+  EXPECT_EQ(info.heights.depth, 12.5);
+  // EXIF's own comes first.
+  AddExif(dir / "b.jpg", {{"Exif.GPSInfo.GPSLatitude", "10/1 0/1 0/1"},
+                          {"Exif.GPSInfo.GPSLongitude", "20/1 0/1 0/1"}});
+  EXPECT_NEAR(ReadImageInfo(dir / "b.jpg").gps->latitude_deg, 10, 1e-9);
 }
 
 TEST(ImageInfo, OrientationIsToldButNotApplied) {

@@ -66,6 +66,20 @@ TEST_F(NavLogs, ColumnsByTheirNames) {
       kNoon);
 }
 
+// As a spreadsheet writes it where decimals have a comma.
+TEST_F(NavLogs, SemicolonsAndDecimalCommas) {
+  const NavLog log = Read(
+      "Zeit;time;lat;lon;depth, m\n"
+      ";2024-05-01 12:00:00,25;43,1;+5,75;-3,5\nx;2024-05-01 12:00:01;43;\"5,5\";1e1\n");
+  ASSERT_EQ(log.fixes.size(), 2u);
+  EXPECT_EQ(log.fixes[0].seconds, kNoon + 0.25);
+  EXPECT_EQ(log.fixes[0].position, Eigen::Vector3d(43.1, 5.75, 3.5));
+  EXPECT_EQ(log.fixes[1].position, Eigen::Vector3d(43, 5.5, -10));
+  const NavLog tabs = Read("name\ttime\tx\ty\n\t0\t1,5\t2\na,b\t1\t1.5\t-2,25\n");
+  ASSERT_EQ(tabs.fixes.size(), 2u);  // an empty first field is one
+  EXPECT_EQ(tabs.fixes[1].position, Eigen::Vector3d(1.5, -2.25, 0));
+}
+
 TEST_F(NavLogs, RowsWithoutAFixAreSkippedAndCounted) {
   testing::internal::CaptureStderr();
   const NavLog log = Read(
