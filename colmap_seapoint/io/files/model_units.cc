@@ -64,6 +64,15 @@ void WriteModelUnits(const std::filesystem::path& dir, const ModelUnits& units) 
   WriteTextFile(dir / kUnitsFile, json.dump(2) + "\n");
 }
 
+std::string ReferenceSystem(const ModelUnits& units) {
+  if (!units.is_metric) return "";
+  if (units.frame == "projected") return units.crs;
+  if (units.frame != "east-north-up" || !units.origin) return "";
+  return "+proj=ortho +lat_0=" + Fixed(units.origin->latitude_deg, 12) +
+         " +lon_0=" + Fixed(units.origin->longitude_deg, 12) +
+         " +datum=WGS84 +units=m +no_defs +type=crs";
+}
+
 std::string UnitsWord(const std::optional<ModelUnits>& units) {
   return units && units->is_metric ? "metres" : "arbitrary";
 }

@@ -32,6 +32,11 @@ std::optional<ModelUnits> ReadModelUnits(const std::filesystem::path& dir);
 // Atomic.
 void WriteModelUnits(const std::filesystem::path& dir, const ModelUnits& units);
 
+// The reference system of `frame`, as WellKnownText() takes it: `crs`, or of east-north-up about an
+// origin its plane itself, which touches the ellipsoid there. "" where the frame is nowhere on the
+// Earth.
+std::string ReferenceSystem(const ModelUnits& units);
+
 // "arbitrary" or "metres": for run.json.
 std::string UnitsWord(const std::optional<ModelUnits>& units);
 // "units arbitrary", or e.g. "metres, east-north-up of latitude 43.1000000, longitude 5.9000000".
