@@ -20,9 +20,13 @@ constexpr double kSigmaOfMedian = 1.4826;
 constexpr double kMinNoise = 1e-6;
 constexpr double kPriorSpread = 1;  // of ln b about ln a
 constexpr double kPriorFloor = 0.05;
+// Water rarely takes more than this of an e-fold over the median range; lenses and lamps rarely
+// fall with more than this power of the cosine.
+constexpr double kAttenuationSpread = 1, kFalloffSpread = 4;
+constexpr double kMinFalloff = -4, kMaxFalloff = 16;
 
 struct Parameters {
-  double attenuation = 0, veil = 0, veil_rate = 0;
+  double attenuation = 0, veil = 0, veil_rate = 0, falloff = 0;
 };
 
 // Of one place.
@@ -32,8 +36,11 @@ struct Place {
 
 class Problem {
  public:
-  explicit Problem(const ChannelSamples& samples)
-      : samples_(samples), scale_(samples.light.size()), weight_(samples.light.size(), 1.0) {
+  Problem(const ChannelSamples& samples, bool is_falloff_known)
+      : samples_(samples),
+        is_falloff_known_(is_falloff_known),
+        scale_(samples.light.size()),
+        weight_(samples.light.size(), 1.0) {
     size_t begin = 0;
     for (const size_t end : samples.place_end) {
       places_.push_back({begin, end});
@@ -72,7 +79,7 @@ class Problem {
     for (size_t i = 0; i < residuals.size(); ++i) {
       cost += weight_[i] * residuals[i] * residuals[i];
     }
-    return cost / (noise_ * noise_) + std::pow(PriorResidual(p), 2);
+    return cost / (noise_ * noise_) + PriorResiduals(p).squaredNorm();
   }
 
   // Of weights that follow the residuals: what starts are compared by.
@@ -84,18 +91,29 @@ class Problem {
     return cost;
   }
 
-  // Adds up the normal equations; what a change of the places' colours could do as well is taken
+  // The normal equations; what a change of the places' colours could do as well is taken
   // out of each column.
-  void Linearize(const Parameters& p, Eigen::Matrix3d* normal, Eigen::Vector3d* right) const {
+  void Linearize(const Parameters& p, Eigen::Matrix4d* normal, Eigen::Vector4d* right) const {
     normal->setZero();
     right->setZero();
     for (const Place& place : places_) AddPlace(place, p, normal, right);
     *normal /= noise_ * noise_;
     *right /= noise_ * noise_;
+    const Eigen::Vector3d prior = PriorResiduals(p);
     const bool is_free = p.attenuation > kPriorFloor;
-    const Eigen::Vector3d prior(is_free ? -1 / p.attenuation : 0, 0, 1 / p.veil_rate);
-    *normal += prior * prior.transpose() / (kPriorSpread * kPriorSpread);
-    *right -= prior * PriorResidual(p) / kPriorSpread;
+    Eigen::Matrix<double, 3, 4> slopes = Eigen::Matrix<double, 3, 4>::Zero();
+    slopes.row(0) << (is_free ? -1 / p.attenuation : 0), 0, 1 / p.veil_rate, 0;
+    slopes.row(0) /= kPriorSpread;
+    slopes(1, 0) = 1 / kAttenuationSpread;
+    slopes(2, 3) = 1 / kFalloffSpread;
+    *normal += slopes.transpose() * slopes;
+    *right -= slopes.transpose() * prior;
+    if (is_falloff_known_) {
+      normal->row(3).setZero();
+      normal->col(3).setZero();
+      (*normal)(3, 3) = 1;
+      (*right)[3] = 0;
+    }
   }
 
   double Noise() const { return noise_; }
@@ -114,11 +132,15 @@ class Problem {
     const double freedom = std::max(1.0, num - static_cast<double>(places_.size()));
     return kSigmaOfMedian * UpperMedian(std::move(residuals)) * std::sqrt(num / freedom);
   }
+  double Falloff(size_t i, const Parameters& p) const {
+    return std::exp(p.falloff * samples_.log_cosine[i]);
+  }
   double Transmission(size_t i, const Parameters& p) const {
-    return std::exp(-p.attenuation * samples_.range[i]);
+    return std::exp(p.falloff * samples_.log_cosine[i] - p.attenuation * samples_.range[i]);
   }
   double WithoutVeil(size_t i, const Parameters& p) const {
-    return samples_.light[i] - p.veil * (1 - std::exp(-p.veil_rate * samples_.range[i]));
+    const double veil = p.veil * (1 - std::exp(-p.veil_rate * samples_.range[i]));
+    return samples_.light[i] - Falloff(i, p) * veil;
   }
   double ColorOf(const Place& place, const Parameters& p) const {
     double sum = 0, squares = 0;
@@ -129,17 +151,20 @@ class Problem {
     }
     return std::max(0.0, sum / squares);
   }
-  static double PriorResidual(const Parameters& p) {
-    return std::log(p.veil_rate / std::max(p.attenuation, kPriorFloor)) / kPriorSpread;
+  static Eigen::Vector3d PriorResiduals(const Parameters& p) {
+    return {std::log(p.veil_rate / std::max(p.attenuation, kPriorFloor)) / kPriorSpread,
+            p.attenuation / kAttenuationSpread, p.falloff / kFalloffSpread};
   }
-  Eigen::Vector3d Slopes(size_t i, const Parameters& p, double color) const {
+  Eigen::Vector4d Slopes(size_t i, const Parameters& p, double color) const {
     const double z = samples_.range[i], veiled = std::exp(-p.veil_rate * z);
-    return {-color * z * Transmission(i, p), 1 - veiled, p.veil * z * veiled};
+    const double falloff = Falloff(i, p), seen = color * Transmission(i, p);
+    return {-seen * z, falloff * (1 - veiled), falloff * p.veil * z * veiled,
+            (seen + falloff * p.veil * (1 - veiled)) * samples_.log_cosine[i]};
   }
-  void AddPlace(const Place& place, const Parameters& p, Eigen::Matrix3d* normal,
-                Eigen::Vector3d* right) const {
+  void AddPlace(const Place& place, const Parameters& p, Eigen::Matrix4d* normal,
+                Eigen::Vector4d* right) const {
     const double color = ColorOf(place, p);
-    Eigen::Vector3d along = Eigen::Vector3d::Zero();
+    Eigen::Vector4d along = Eigen::Vector4d::Zero();
     double squares = 0;
     for (size_t i = place.begin; i < place.end; ++i) {
       const double e = Transmission(i, p);
@@ -149,36 +174,38 @@ class Problem {
     along /= squares;
     for (size_t i = place.begin; i < place.end; ++i) {
       const double e = Transmission(i, p), weight = weight_[i] * scale_[i] * scale_[i];
-      const Eigen::Vector3d slopes = Slopes(i, p, color) - e * along;
+      const Eigen::Vector4d slopes = Slopes(i, p, color) - e * along;
       *normal += weight * slopes * slopes.transpose();
       *right += weight * (WithoutVeil(i, p) - color * e) * slopes;
     }
   }
 
   const ChannelSamples& samples_;
+  const bool is_falloff_known_;
   std::vector<Place> places_;
   std::vector<double> scale_;  // of the residuals; the same within a place
   std::vector<double> weight_;
   double noise_ = 1;
 };
 
-Parameters Stepped(const Parameters& p, const Eigen::Vector3d& step) {
+Parameters Stepped(const Parameters& p, const Eigen::Vector4d& step) {
   Parameters next;
   next.attenuation = std::clamp(p.attenuation + step[0], 0.0, kMaxRate);
   next.veil = std::clamp(p.veil + step[1], 0.0, 1.0);
   next.veil_rate = std::clamp(p.veil_rate + step[2], 0.5 * p.veil_rate, 2 * p.veil_rate);
   next.veil_rate = std::clamp(next.veil_rate, kMinVeilRate, kMaxRate);
+  next.falloff = std::clamp(p.falloff + step[3], kMinFalloff, kMaxFalloff);
   return next;
 }
 
 Parameters Descend(const Problem& problem, Parameters p) {
   double damping = 1e-3, cost = problem.Cost(p);
   for (int k = 0; k < kNumSteps; ++k) {
-    Eigen::Matrix3d normal;
-    Eigen::Vector3d right;
+    Eigen::Matrix4d normal;
+    Eigen::Vector4d right;
     problem.Linearize(p, &normal, &right);
-    Eigen::Matrix3d damped = normal;
-    damped.diagonal() += damping * normal.diagonal() + Eigen::Vector3d::Constant(1e-9);
+    Eigen::Matrix4d damped = normal;
+    damped.diagonal() += damping * normal.diagonal() + Eigen::Vector4d::Constant(1e-9);
     const Parameters next = Stepped(p, damped.ldlt().solve(right));
     const double next_cost = problem.Cost(next);
     const bool is_better = next_cost < cost;
@@ -200,23 +227,23 @@ double Percentile(std::vector<double> values, double share) {
 }
 
 double SigmaOfAttenuation(const Problem& problem, const Parameters& p) {
-  Eigen::Matrix3d normal;
-  Eigen::Vector3d right;
+  Eigen::Matrix4d normal;
+  Eigen::Vector4d right;
   problem.Linearize(p, &normal, &right);
   normal.diagonal().array() += 1e-12;
-  const Eigen::Vector3d column = normal.ldlt().solve(Eigen::Vector3d::UnitX());
+  const Eigen::Vector4d column = normal.ldlt().solve(Eigen::Vector4d::UnitX());
   return std::sqrt(std::max(0.0, column[0]));
 }
 
 }  // namespace
 
-ChannelFit FitChannel(const ChannelSamples& samples) {
+ChannelFit FitChannel(const ChannelSamples& samples, std::optional<double> falloff) {
   const double darkest = std::max(0.0, Percentile(samples.light, 0.05));
   ChannelFit best;
   double best_noise = 0, best_cost = std::numeric_limits<double>::infinity();
   for (const double rate : kStarts) {
-    Problem problem(samples);
-    Parameters p = {rate, 0.5 * darkest, rate};
+    Problem problem(samples, falloff.has_value());
+    Parameters p = {rate, 0.5 * darkest, rate, falloff.value_or(0)};
     for (int round = 0; round < kNumRounds; ++round) {
       problem.Reweight(p);
       p = Descend(problem, p);
@@ -226,7 +253,7 @@ ChannelFit FitChannel(const ChannelSamples& samples) {
     const double cost = problem.RobustCost(p, best_noise);
     if (cost >= best_cost) continue;
     best_cost = cost;
-    best = {p.attenuation, p.veil, p.veil_rate, SigmaOfAttenuation(problem, p),
+    best = {p.attenuation,        p.veil, p.veil_rate, p.falloff, SigmaOfAttenuation(problem, p),
             problem.LightNoise(p)};
   }
   return best;

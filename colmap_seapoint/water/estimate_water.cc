@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "colmap_seapoint/base/median.h"
@@ -15,9 +16,9 @@ constexpr size_t kMinPlaces = 20;
 constexpr double kMinSpan = 0.02;   // rms of a place's ranges about their mean, over the latter
 constexpr double kMaxSigma = 0.1;   // of a times the median range: of a restored colour's logarithm
 constexpr double kMaxNoise = 0.08;  // of a restored colour
-constexpr double kMaxGain = 1000;
 constexpr double kMaxWhite = 50;
 const Eigen::Array3d kLuminance(0.2126, 0.7152, 0.0722);  // of sRGB's primaries
+constexpr double kGrey = 0.2159;                          // the light of the middle byte
 
 Eigen::Array3d ColorOf(const WaterSample& sample) {
   return {sample.rgb[0], sample.rgb[1], sample.rgb[2]};
@@ -25,6 +26,7 @@ Eigen::Array3d ColorOf(const WaterSample& sample) {
 
 bool IsUsable(const WaterSample& sample) {
   if (!std::isfinite(sample.range) || !(sample.range > 0)) return false;
+  if (!(sample.axis_cosine > 0 && sample.axis_cosine <= 1)) return false;
   return std::all_of(sample.rgb.begin(), sample.rgb.end(),
                      [](float value) { return value >= 0 && value < kOverexposed; });
 }
@@ -32,7 +34,7 @@ bool IsUsable(const WaterSample& sample) {
 // Whatever order they come in, they give one result.
 void Sort(std::vector<WaterSample>* samples) {
   const auto key = [](const WaterSample& s) {
-    return std::tie(s.place, s.picture, s.range, s.rgb);
+    return std::tie(s.place, s.picture, s.range, s.axis_cosine, s.rgb);
   };
   std::sort(samples->begin(), samples->end(),
             [&](const WaterSample& a, const WaterSample& b) { return key(a) < key(b); });
@@ -72,42 +74,50 @@ SeenTwice FindSeenTwice(const std::vector<WaterSample>& samples) {
   return found;
 }
 
-WaterState FitWater(const std::vector<WaterSample>& samples, WaterModel* water) {
+ChannelSamples SamplesOf(const std::vector<WaterSample>& samples, const SeenTwice& seen,
+                         double median_range, const Eigen::Array3d& weights) {
+  ChannelSamples channel;
+  channel.place_end = seen.place_end;
+  for (const size_t i : seen.samples) {
+    channel.range.push_back(samples[i].range / median_range);
+    channel.log_cosine.push_back(std::log(samples[i].axis_cosine));
+    channel.light.push_back((weights * ColorOf(samples[i])).sum());
+  }
+  return channel;
+}
+
+WaterState FitWater(const std::vector<WaterSample>& samples, WaterModel* water,
+                    Eigen::Array3d* noise) {
   const SeenTwice seen = FindSeenTwice(samples);
   if (seen.place_end.size() < kMinPlaces) return WaterState::kTooFewPlaces;
   if (seen.span < kMinSpan) return WaterState::kOneRange;
   const double median_range = MedianRange(samples);
+  // Lens and lamps are the same for all channels: what differs is the water's.
+  water->falloff = FitChannel(SamplesOf(samples, seen, median_range, kLuminance)).falloff;
   for (int c = 0; c < 3; ++c) {
-    ChannelSamples channel;
-    channel.place_end = seen.place_end;
-    for (const size_t i : seen.samples) {
-      channel.range.push_back(samples[i].range / median_range);
-      channel.light.push_back(samples[i].rgb[static_cast<size_t>(c)]);
-    }
-    const ChannelFit fit = FitChannel(channel);
+    const Eigen::Array3d channel = Eigen::Vector3d::Unit(c).array();
+    const ChannelFit fit =
+        FitChannel(SamplesOf(samples, seen, median_range, channel), water->falloff);
     if (!(fit.attenuation_sigma <= kMaxSigma)) return WaterState::kUncertain;
     water->attenuation[c] = fit.attenuation / median_range;
     water->veil[c] = fit.veil;
     water->veil_rate[c] = fit.veil_rate / median_range;
-    water->max_gain[c] = std::clamp(kMaxNoise / std::max(fit.noise, 1e-9), 1.0, kMaxGain);
+    (*noise)[c] = fit.noise;
   }
   return WaterState::kDetermined;
 }
 
-// Grey is what the median of all samples is, restored, and as bright as their median was.
-Eigen::Array3d WhiteBalance(const std::vector<WaterSample>& samples, const WaterModel& water) {
-  std::vector<double> brightness, channel(samples.size());
-  for (const WaterSample& sample : samples) {
-    brightness.push_back((kLuminance * ColorOf(sample)).sum());
-  }
-  const double target = UpperMedian(std::move(brightness));
+// Grey is what the median of all samples is, restored.
+Eigen::Array3d WhiteBalance(const std::vector<WaterSample>& samples, WaterModel water) {
+  std::vector<double> channel(samples.size());
+  water.max_gain.setConstant(std::numeric_limits<double>::infinity());
   Eigen::Array3d white;
   for (int c = 0; c < 3; ++c) {
     for (size_t i = 0; i < samples.size(); ++i) {
-      channel[i] = static_cast<double>(
-          Restore(water, ColorOf(samples[i]).cast<float>(), samples[i].range)[c]);
+      channel[i] = static_cast<double>(Restore(water, ColorOf(samples[i]).cast<float>(),
+                                               samples[i].range, samples[i].axis_cosine)[c]);
     }
-    white[c] = std::clamp(target / std::max(UpperMedian(channel), 1e-9), 1 / kMaxWhite, kMaxWhite);
+    white[c] = std::clamp(kGrey / std::max(UpperMedian(channel), 1e-9), 1 / kMaxWhite, kMaxWhite);
   }
   return white;
 }
@@ -121,10 +131,12 @@ WaterModel EstimateWater(std::vector<WaterSample> samples) {
   WaterModel water;
   if (samples.empty()) return water;
   Sort(&samples);
-  const WaterState state = FitWater(samples, &water);
+  Eigen::Array3d noise = Eigen::Array3d::Zero();
+  const WaterState state = FitWater(samples, &water, &noise);
   if (state != WaterState::kDetermined) water = {};
   water.state = state;
   water.white = WhiteBalance(samples, water);
+  water.max_gain = (kMaxNoise / (noise * water.white).max(1e-9)).max(1);
   return water;
 }
 

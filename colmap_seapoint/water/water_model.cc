@@ -1,5 +1,6 @@
 #include "colmap_seapoint/water/water_model.h"
 
+#include <cmath>
 #include <cstdio>
 
 #include "colmap_seapoint/base/error.h"
@@ -7,18 +8,20 @@
 
 namespace colmap_seapoint {
 
-Eigen::Array3f Restore(const WaterModel& water, const Eigen::Array3f& rgb, float range) {
+Eigen::Array3f Restore(const WaterModel& water, const Eigen::Array3f& rgb, float range,
+                       float axis_cosine) {
   const double z = range > 0 ? range : 0;
+  const double falloff = axis_cosine > 0 ? std::pow(axis_cosine, water.falloff) : 1;
   const Eigen::Array3d veil = water.veil * (1 - (-water.veil_rate * z).exp());
   const Eigen::Array3d gain = (water.attenuation * z).exp().min(water.max_gain.max(1));
-  return ((rgb.cast<double>() - veil) * gain * water.white).max(0).cast<float>();
+  return ((rgb.cast<double>() / falloff - veil) * gain * water.white).max(0).cast<float>();
 }
 
 std::array<uint8_t, 3> RestorePixel(const WaterModel& water, const std::array<uint8_t, 3>& rgb,
-                                    float range) {
+                                    float range, float axis_cosine) {
   const Eigen::Array3f light(LinearFromSrgb(rgb[0]), LinearFromSrgb(rgb[1]),
                              LinearFromSrgb(rgb[2]));
-  const Eigen::Array3f restored = Restore(water, light, range);
+  const Eigen::Array3f restored = Restore(water, light, range, axis_cosine);
   return {SrgbFromLinear(restored[0]), SrgbFromLinear(restored[1]), SrgbFromLinear(restored[2])};
 }
 

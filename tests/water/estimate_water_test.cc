@@ -20,6 +20,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 struct World {
   Eigen::Array3d attenuation{0.6, 0.2, 0.25}, veil{0.04, 0.15, 0.18}, veil_rate{0.5, 0.25, 0.3};
   double min_range = 1.5, max_range = 3;
+  double falloff = 0;
   double noise = 0;  // of the light
   double wrong = 0;  // share of samples that show something else
   int num_places = 2000, samples_a_place = 4;
@@ -45,11 +46,14 @@ Survey Take(const World& world, uint32_t seed = 1) {
       const double z = world.min_range + (world.max_range - world.min_range) * uniform(random);
       Eigen::Array3d light_seen =
           color * (-world.attenuation * z).exp() + world.veil * (1 - (-world.veil_rate * z).exp());
+      const double cosine = 0.6 + 0.4 * uniform(random);
+      light_seen *= std::pow(cosine, world.falloff);
       if (uniform(random) < world.wrong) light_seen *= 2 * uniform(random);
       WaterSample sample;
       sample.place = static_cast<uint32_t>(place);
       sample.picture = static_cast<uint32_t>(k);
       sample.range = static_cast<float>(z);
+      sample.axis_cosine = static_cast<float>(cosine);
       for (int c = 0; c < 3; ++c) {
         const double value = light_seen[c] + world.noise * normal(random);
         sample.rgb[static_cast<size_t>(c)] = static_cast<float>(std::max(0.0, value));
@@ -64,7 +68,8 @@ Survey Take(const World& world, uint32_t seed = 1) {
 double MeanColorError(const Survey& survey, const WaterModel& water) {
   double scale = 0, weight = 0, sum = 0;
   const auto restored = [&](const WaterSample& sample) -> Eigen::Array3d {
-    return Restore(water, {sample.rgb[0], sample.rgb[1], sample.rgb[2]}, sample.range)
+    return Restore(water, {sample.rgb[0], sample.rgb[1], sample.rgb[2]}, sample.range,
+                   sample.axis_cosine)
         .cast<double>();
   };
   for (const WaterSample& sample : survey.samples) {
@@ -91,6 +96,17 @@ TEST(EstimateWater, ExactWorldGivesItsValues) {
   }
 }
 
+TEST(EstimateWater, VignetteIsNotTakenForWater) {
+  World world;
+  world.falloff = 4;
+  const WaterModel water = EstimateWater(Take(world).samples);
+  ASSERT_EQ(water.state, WaterState::kDetermined);
+  EXPECT_NEAR(water.falloff, 4, 0.05);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(water.attenuation[c], world.attenuation[c], 0.03 * world.attenuation[c] + 0.005);
+  }
+}
+
 TEST(EstimateWater, NoiseAndWrongPlacesLeaveTheColorsRight) {
   World world;
   world.noise = 0.004;
@@ -104,7 +120,7 @@ TEST(EstimateWater, NoiseAndWrongPlacesLeaveTheColorsRight) {
   world.wrong = 0;
   const Survey clean = Take(world, 2);
   EXPECT_LT(MeanColorError(clean, water), 3);
-  EXPECT_GT(MeanColorError(clean, WaterModel()), 20);
+  EXPECT_GT(MeanColorError(clean, WaterModel()), 15);
 }
 
 TEST(EstimateWater, ClearAirHasNoAttenuation) {
@@ -171,7 +187,7 @@ TEST(EstimateWater, NothingButNoiseIsNotBelieved) {
   world.num_places = 25;
   world.samples_a_place = 2;
   world.min_range = 2;
-  world.max_range = 2.2;
+  world.max_range = 2.4;
   world.noise = 0.2;
   const WaterModel water = EstimateWater(Take(world).samples);
   EXPECT_EQ(water.state, WaterState::kUncertain);
@@ -187,6 +203,11 @@ TEST(EstimateWater, OddSamplesArePassedOver) {
   for (const float odd : {kNan, -1.0f, 1e30f, 1.0f}) {
     WaterSample sample = samples[5];
     sample.rgb[1] = odd;
+    samples.push_back(sample);
+  }
+  for (const float odd : {kNan, -1.0f, 0.0f, 1.1f}) {
+    WaterSample sample = samples[5];
+    sample.axis_cosine = odd;
     samples.push_back(sample);
   }
   for (const float odd : {kNan, -1.0f, 0.0f, std::numeric_limits<float>::infinity()}) {
@@ -214,8 +235,8 @@ TEST(Restore, NoiseIsNotMultipliedWithoutEnd) {
   // Ten times as far as any sample: red is as good as gone.
   const Eigen::Array3f veil = (water.veil * (1 - (-water.veil_rate * 30).exp())).cast<float>();
   const Eigen::Array3f noise = Restore(water, veil + 0.004f, 30);
-  EXPECT_LT((noise / water.white.cast<float>()).maxCoeff(), 0.1f);
-  EXPECT_GT((noise / water.white.cast<float>()).maxCoeff(), 0.02f);
+  EXPECT_LT(noise.maxCoeff(), 0.15f);  // without a bound: 0.004 exp(0.6 * 30), more than white
+  EXPECT_GT(noise.maxCoeff(), 0.05f);
 }
 
 TEST(Restore, UnknownRangesAreOnlyBalanced) {
