@@ -29,6 +29,8 @@ inline constexpr char kUnitsFile[] = "units.json";
 
 // nullopt when `dir` has no such file. Throws Error when it holds something else.
 std::optional<ModelUnits> ReadModelUnits(const std::filesystem::path& dir);
+// Of a file of any name, which must be there.
+ModelUnits ReadModelUnitsFile(const std::filesystem::path& path);
 // Atomic.
 void WriteModelUnits(const std::filesystem::path& dir, const ModelUnits& units);
 

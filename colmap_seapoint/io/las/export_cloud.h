@@ -16,6 +16,9 @@ struct CloudExport {
   LasPacking packing = LasPacking::kNone;
 };
 
+// What our files name as the system that made them, and nobody else's: see CheckReplaceable().
+inline constexpr char kLasWords[] = "colmap_seapoint LAS";
+
 // Whether this build has the library (liblaszip) that packs.
 bool CanWriteLaz();
 

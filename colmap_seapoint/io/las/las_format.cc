@@ -6,6 +6,7 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/version.h"
+#include "colmap_seapoint/io/las/export_cloud.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -110,7 +111,7 @@ std::vector<char> HeaderBytes(const LasHeader& header) {
   AppendZeros(16, &bytes);  // GUID
   Append(uint8_t{1}, &bytes);
   Append(uint8_t{4}, &bytes);
-  AppendText("colmap_seapoint", 32, &bytes);
+  AppendText(kLasWords, 32, &bytes);
   AppendText("colmap_seapoint " + std::string(Version()), 32, &bytes);
   AppendZeros(4, &bytes);  // day and year
   Append(static_cast<uint16_t>(kLasHeaderBytes), &bytes);

@@ -37,7 +37,7 @@ struct LazFile::Impl {
     out->global_encoding = 1 << 4;
     out->version_major = 1;
     out->version_minor = 4;
-    std::strncpy(out->system_identifier, "colmap_seapoint", sizeof(out->system_identifier));
+    std::strncpy(out->system_identifier, kLasWords, sizeof(out->system_identifier));
     const std::string software = "colmap_seapoint " + std::string(Version());
     std::strncpy(out->generating_software, software.c_str(), sizeof(out->generating_software) - 1);
     out->header_size = kLasHeaderBytes;

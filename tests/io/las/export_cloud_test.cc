@@ -85,6 +85,7 @@ TEST(ExportCloud, EveryFieldStandsWhereTheSpecificationSays) {
   EXPECT_EQ(ExportCloud(dir / "cloud.ply", dir / "cloud.las", options), points.size());
   const Las las(dir / "cloud.las");
   EXPECT_EQ(las.Text(0, 4), "LASF");
+  EXPECT_EQ(las.Text(26, 32), kLasWords);
   EXPECT_EQ(las.At<uint8_t>(24), 1);
   EXPECT_EQ(las.At<uint8_t>(25), 4);
   EXPECT_EQ(las.At<uint16_t>(6), 16);  // the reference system is well-known text
