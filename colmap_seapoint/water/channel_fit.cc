@@ -34,6 +34,32 @@ struct Place {
   size_t begin, end;
 };
 
+// What the model makes of sample i.
+double Falloff(const ChannelSamples& samples, size_t i, const Parameters& p) {
+  return std::exp(p.falloff * samples.log_cosine[i]);
+}
+
+double Transmission(const ChannelSamples& samples, size_t i, const Parameters& p) {
+  return std::exp(p.falloff * samples.log_cosine[i] - p.attenuation * samples.range[i]);
+}
+
+double WithoutVeil(const ChannelSamples& samples, size_t i, const Parameters& p) {
+  const double veil = p.veil * (1 - std::exp(-p.veil_rate * samples.range[i]));
+  return samples.light[i] - Falloff(samples, i, p) * veil;
+}
+
+Eigen::Vector3d PriorResiduals(const Parameters& p) {
+  return {std::log(p.veil_rate / std::max(p.attenuation, kPriorFloor)) / kPriorSpread,
+          p.attenuation / kAttenuationSpread, p.falloff / kFalloffSpread};
+}
+
+Eigen::Vector4d Slopes(const ChannelSamples& samples, size_t i, const Parameters& p, double color) {
+  const double z = samples.range[i], veiled = std::exp(-p.veil_rate * z);
+  const double falloff = Falloff(samples, i, p), seen = color * Transmission(samples, i, p);
+  return {-seen * z, falloff * (1 - veiled), falloff * p.veil * z * veiled,
+          (seen + falloff * p.veil * (1 - veiled)) * samples.log_cosine[i]};
+}
+
 class Problem {
  public:
   Problem(const ChannelSamples& samples, bool is_falloff_known)
@@ -58,7 +84,8 @@ class Problem {
     for (const Place& place : places_) {
       const double color = ColorOf(place, p);
       for (size_t i = place.begin; i < place.end; ++i) {
-        residuals[i] = scale_[i] * (WithoutVeil(i, p) - color * Transmission(i, p));
+        residuals[i] =
+            scale_[i] * (WithoutVeil(samples_, i, p) - color * Transmission(samples_, i, p));
       }
     }
     return residuals;
@@ -132,34 +159,14 @@ class Problem {
     const double freedom = std::max(1.0, num - static_cast<double>(places_.size()));
     return kSigmaOfMedian * UpperMedian(std::move(residuals)) * std::sqrt(num / freedom);
   }
-  double Falloff(size_t i, const Parameters& p) const {
-    return std::exp(p.falloff * samples_.log_cosine[i]);
-  }
-  double Transmission(size_t i, const Parameters& p) const {
-    return std::exp(p.falloff * samples_.log_cosine[i] - p.attenuation * samples_.range[i]);
-  }
-  double WithoutVeil(size_t i, const Parameters& p) const {
-    const double veil = p.veil * (1 - std::exp(-p.veil_rate * samples_.range[i]));
-    return samples_.light[i] - Falloff(i, p) * veil;
-  }
   double ColorOf(const Place& place, const Parameters& p) const {
     double sum = 0, squares = 0;
     for (size_t i = place.begin; i < place.end; ++i) {
-      const double e = Transmission(i, p);
-      sum += weight_[i] * e * WithoutVeil(i, p);
+      const double e = Transmission(samples_, i, p);
+      sum += weight_[i] * e * WithoutVeil(samples_, i, p);
       squares += weight_[i] * e * e;
     }
     return std::max(0.0, sum / squares);
-  }
-  static Eigen::Vector3d PriorResiduals(const Parameters& p) {
-    return {std::log(p.veil_rate / std::max(p.attenuation, kPriorFloor)) / kPriorSpread,
-            p.attenuation / kAttenuationSpread, p.falloff / kFalloffSpread};
-  }
-  Eigen::Vector4d Slopes(size_t i, const Parameters& p, double color) const {
-    const double z = samples_.range[i], veiled = std::exp(-p.veil_rate * z);
-    const double falloff = Falloff(i, p), seen = color * Transmission(i, p);
-    return {-seen * z, falloff * (1 - veiled), falloff * p.veil * z * veiled,
-            (seen + falloff * p.veil * (1 - veiled)) * samples_.log_cosine[i]};
   }
   void AddPlace(const Place& place, const Parameters& p, Eigen::Matrix4d* normal,
                 Eigen::Vector4d* right) const {
@@ -167,16 +174,16 @@ class Problem {
     Eigen::Vector4d along = Eigen::Vector4d::Zero();
     double squares = 0;
     for (size_t i = place.begin; i < place.end; ++i) {
-      const double e = Transmission(i, p);
-      along += weight_[i] * e * Slopes(i, p, color);
+      const double e = Transmission(samples_, i, p);
+      along += weight_[i] * e * Slopes(samples_, i, p, color);
       squares += weight_[i] * e * e;
     }
     along /= squares;
     for (size_t i = place.begin; i < place.end; ++i) {
-      const double e = Transmission(i, p), weight = weight_[i] * scale_[i] * scale_[i];
-      const Eigen::Vector4d slopes = Slopes(i, p, color) - e * along;
+      const double e = Transmission(samples_, i, p), weight = weight_[i] * scale_[i] * scale_[i];
+      const Eigen::Vector4d slopes = Slopes(samples_, i, p, color) - e * along;
       *normal += weight * slopes * slopes.transpose();
-      *right += weight * (WithoutVeil(i, p) - color * e) * slopes;
+      *right += weight * (WithoutVeil(samples_, i, p) - color * e) * slopes;
     }
   }
 

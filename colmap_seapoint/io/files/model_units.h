@@ -35,8 +35,8 @@ ModelUnits ReadModelUnitsFile(const std::filesystem::path& path);
 void WriteModelUnits(const std::filesystem::path& dir, const ModelUnits& units);
 
 // The reference system of `frame`, as WellKnownText() takes it: `crs`, or of east-north-up about an
-// origin its plane itself, which touches the ellipsoid there. "" where the frame is nowhere on the
-// Earth.
+// origin the plane that touches the ellipsoid there, which LocalEastNorthUp() keeps to but for
+// 3e-5 of the distance from it (2 cm in 600 m). "" where the frame is nowhere on the Earth.
 std::string ReferenceSystem(const ModelUnits& units);
 
 // "arbitrary" or "metres": for run.json.
