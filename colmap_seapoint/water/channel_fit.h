@@ -29,7 +29,7 @@ struct ChannelFit {
 //
 // What the samples do not tell is left to priors as weak as one residual each: b is drawn towards
 // a, since a short span of ranges tells only B b; a and v towards 0, of which over level ground
-// only the sum shows. Time linear in the samples, a few microseconds each.
+// only the sum shows. Time linear in the samples, some 10 microseconds each.
 ChannelFit FitChannel(const ChannelSamples& samples, std::optional<double> falloff = {});
 
 }  // namespace colmap_seapoint
