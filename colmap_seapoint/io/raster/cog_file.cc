@@ -13,6 +13,16 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr int kCogTile = 512;
+// GDAL's own level, 6, takes 1.7 times (heights) and 5 times (colours) as long for 4 % less.
+constexpr char kCogLevel[] = "LEVEL=1";
+
+// GDAL makes overviews a few rows of the whole width at a time: a row of tiles must fit into its
+// cache, or each is unpacked many times. A part of the layout's tiles, so that each is packed once.
+int ScratchTile(int tile_size) {
+  constexpr int kMost = 256;
+  while (tile_size > kMost && tile_size % 32 == 0) tile_size /= 2;
+  return tile_size;
+}
 
 // Labels and masks have no mean.
 const char* Resampling(RasterBands bands) {
@@ -93,7 +103,7 @@ std::filesystem::path BlockFolder(const std::filesystem::path& path) {
 }  // namespace
 
 GdalStrings ScratchOptions(const RasterLayout& layout) {
-  const std::string tile = std::to_string(layout.tile_size);
+  const std::string tile = std::to_string(ScratchTile(layout.tile_size));
   GdalStrings options = {"TILED=YES",        "BLOCKXSIZE=" + tile, "BLOCKYSIZE=" + tile,
                          "COMPRESS=DEFLATE", "ZLEVEL=1",           "BIGTIFF=IF_SAFER",
                          "SPARSE_OK=TRUE",   "INTERLEAVE=PIXEL"};
@@ -120,6 +130,7 @@ void WriteCog(GDALDatasetH scratch, const AtomicPath& scratch_file,
     }
     GdalStrings options = {"COMPRESS=DEFLATE",
                            "PREDICTOR=YES",
+                           kCogLevel,
                            "BLOCKSIZE=" + std::to_string(kCogTile),
                            "BIGTIFF=IF_SAFER",
                            "OVERVIEWS=FORCE_USE_EXISTING",

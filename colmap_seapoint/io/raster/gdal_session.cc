@@ -14,7 +14,7 @@
 namespace colmap_seapoint {
 namespace {
 
-// Holds a row of tiles of the widest map.
+// Holds a row of scratch tiles (cog_file.cc) of a map of 100,000 pixels.
 constexpr GIntBig kCacheBytes = GIntBig{128} << 20;
 constexpr const char* kDrivers[] = {"GTiff", "COG", "VRT"};
 
