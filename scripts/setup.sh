@@ -10,7 +10,7 @@ packages=(
   colmap
   libopencv-dev libeigen3-dev libceres-dev libsqlite3-dev libboost-program-options-dev
   libjpeg-dev libpng-dev libtiff-dev libwebp-dev libheif-dev libraw-dev libexiv2-dev liblensfun-dev liblensfun-data-v1
-  libavformat-dev libavcodec-dev libavutil-dev libswscale-dev nlohmann-json3-dev libnanoflann-dev libproj-dev
+  libavformat-dev libavcodec-dev libavutil-dev libswscale-dev nlohmann-json3-dev libnanoflann-dev libproj-dev libgdal-dev
   libapriltag-dev libhpdf-dev poppler-utils
   libhwy-dev libxxhash-dev ccache pkg-config libgtest-dev sqlite3 file
 )

@@ -16,6 +16,8 @@ colmap_seapoint/io/image        colmap_seapoint/base colmap_seapoint/system colm
 colmap_seapoint/io/video        colmap_seapoint/base colmap_seapoint/io/files
 colmap_seapoint/io/pdf          colmap_seapoint/base colmap_seapoint/io/files
 colmap_seapoint/io/cloud        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files
+colmap_seapoint/io/raster       colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files colmap_seapoint/io/image
+colmap_seapoint/io/las          colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/cloud
 colmap_seapoint/io/colmap       colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files colmap_seapoint/io/image
 feature/kernels                 colmap_seapoint/base
 feature/detector                colmap_seapoint/base feature/kernels
@@ -49,6 +51,7 @@ colmap_seapoint/frames          colmap_seapoint/base colmap_seapoint/io/files co
 colmap_seapoint/pairing         colmap_seapoint/base colmap_seapoint/io/* feature feature/*
 colmap_seapoint/remeasuring     colmap_seapoint/base feature/remeasuring
 colmap_seapoint/report          colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/compare colmap_seapoint/georeference densify densify/*
+colmap_seapoint/water           colmap_seapoint/base
 colmap_seapoint/workspace       colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/pictures
 colmap_seapoint/pipeline/intake colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/pictures colmap_seapoint/frames colmap_seapoint/workspace
 colmap_seapoint/pipeline        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/compare colmap_seapoint/estimate colmap_seapoint/georeference colmap_seapoint/navigation colmap_seapoint/mapping colmap_seapoint/cameras colmap_seapoint/pictures colmap_seapoint/frames colmap_seapoint/pairing colmap_seapoint/report colmap_seapoint/workspace colmap_seapoint/pipeline/intake feature feature/* densify densify/*
@@ -93,6 +96,7 @@ only_in "children are started by mapping only" 'RunSubprocess\(|io/files/subproc
   'colmap_seapoint/(mapping|io/files)/'
 only_in "SQLite is io's" '#include <sqlite3\.h>|io/files/sqlite\.h' 'colmap_seapoint/io/(files|colmap)/'
 only_in "Videos are io/video's" '#include <lib(av|sw)' 'colmap_seapoint/io/video/'
+only_in "GDAL is io/raster's" '#include <(gdal|ogr_|cpl_)' 'colmap_seapoint/io/raster/'
 only_in "OpenCV's decoders are io/image's" '#include <opencv2/imgcodecs' 'colmap_seapoint/io/image/'
 only_in "only cli prints results, only base/progress prints the log" \
   'std::(cout|cerr|clog)|[^sn]printf\(|(^|[^a-z_])puts\(' \

@@ -1,4 +1,5 @@
 #include "colmap_seapoint/cli/command.h"
+#include "colmap_seapoint/pipeline/cloud_exporter.h"
 #include "colmap_seapoint/pipeline/compare.h"
 #include "colmap_seapoint/pipeline/densify.h"
 #include "colmap_seapoint/pipeline/extract.h"
@@ -31,6 +32,8 @@ std::vector<Command> AllCommands() {
                   RunPartialDensifier),
       MakeCommand("cloud_comparer", "two clouds in one frame -> accuracy, completeness, density",
                   RunCloudComparer),
+      MakeCommand("cloud_exporter", "a cloud -> LAS or LAZ, where it lies on the Earth",
+                  RunCloudExporter),
       MakeCommand("render_cloud", "a cloud -> a picture of it, from above or as a camera saw it",
                   RunCloudRenderer),
       MakeCommand("automatic_reconstructor", "a folder of pictures -> dense clouds, all in one",

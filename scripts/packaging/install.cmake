@@ -40,7 +40,7 @@ endif()
 set(exported_targets
   seapoint_flags seapoint_simd seapoint_base seapoint_system
   seapoint_files seapoint_nav_files seapoint_outputs seapoint_image seapoint_video seapoint_cloud
-  seapoint_colmap seapoint_pdf seapoint_io
+  seapoint_las seapoint_colmap seapoint_pdf seapoint_raster seapoint_water seapoint_io
   seapoint_feature_kernels seapoint_feature_detector seapoint_feature_descriptor
   seapoint_feature_matching seapoint_feature_retrieval seapoint_feature_remeasuring seapoint_feature
   seapoint_densify_kernels seapoint_densify_match seapoint_densify_overlap seapoint_densify_cloud
@@ -102,7 +102,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libcolmap-seapoint-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
   "libeigen3-dev, libopencv-dev (>= 4.5), libceres-dev (>= 2.0), libhwy-dev (>= 1.0.3), pkg-config, \
-libsqlite3-dev, libproj-dev, libxxhash-dev, libjpeg-dev, libpng-dev, libtiff-dev, libwebp-dev, \
+libsqlite3-dev, libproj-dev, libgdal-dev, libxxhash-dev, libjpeg-dev, libpng-dev, libtiff-dev, libwebp-dev, \
 libheif-dev, libraw-dev, libavformat-dev, libavcodec-dev, libavutil-dev, libswscale-dev, libexiv2-dev, \
 liblensfun-dev, libapriltag-dev, libhpdf-dev")
 include(CPack)

@@ -237,6 +237,8 @@ bool CloudReader::HasColors() const {
   return std::all_of(rgb.begin(), rgb.end(), [](int i) { return i >= 0; });
 }
 
+bool CloudReader::HasConfidence() const { return state_->layout.confidence >= 0; }
+
 bool CloudReader::FitsFloat() const {
   if (state_->header.is_ascii) return false;
   for (const int i : state_->layout.xyz) {

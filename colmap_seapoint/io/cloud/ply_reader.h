@@ -33,6 +33,7 @@ class CloudReader {
   uint64_t NumPoints() const;  // as the header announces; the file is long enough for them
   bool HasNormals() const;
   bool HasColors() const;
+  bool HasConfidence() const;
   // Whether a float holds every x y z exactly.
   bool FitsFloat() const;
   // False behind the last vertex.

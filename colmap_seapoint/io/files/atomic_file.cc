@@ -1,6 +1,7 @@
 #include "colmap_seapoint/io/files/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/io/files/atomic_path.h"
 #include "colmap_seapoint/io/files/input_stream.h"
 #include "colmap_seapoint/io/files/temporary_file.h"
 #include "colmap_seapoint/system/system_error.h"
@@ -26,16 +28,27 @@ void SyncParentFolder(const std::filesystem::path& path) {
   close(folder);
 }
 
+TemporaryFile CreateBeside(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    throw SystemError(path, "is a folder", EISDIR);
+  }
+  const std::filesystem::path parent = path.parent_path();
+  TemporaryFile temporary = CreateTemporaryFile(parent.empty() ? "." : parent);
+  if (temporary.descriptor < 0) throw SystemError(path, "cannot be created", errno);
+  return temporary;
+}
+
+void RenameInto(const std::filesystem::path& temporary, const std::filesystem::path& path) {
+  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
+    throw SystemError(path, "cannot be put in its place", errno);
+  }
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path_, ignored)) {
-    throw SystemError(path_, "is a folder", EISDIR);
-  }
-  const std::filesystem::path parent = path_.parent_path();
-  const TemporaryFile temporary = CreateTemporaryFile(parent.empty() ? "." : parent);
-  if (temporary.descriptor < 0) throw SystemError(path_, "cannot be created", errno);
+  const TemporaryFile temporary = CreateBeside(path_);
   temporary_path_ = temporary.path;
   file_ = fdopen(temporary.descriptor, "wb");
   if (file_ == nullptr) {
@@ -83,12 +96,45 @@ void AtomicFile::Commit() {
   if (std::fflush(file_) != 0 || fsync(fileno(file_)) != 0) {
     throw SystemError(path_, "cannot be written", errno);
   }
-  if (std::rename(temporary_path_.c_str(), path_.c_str()) != 0) {
-    throw SystemError(path_, "cannot be put in its place", errno);
-  }
+  RenameInto(temporary_path_, path_);
   // fsync() has said that all is on the disk: closing has nothing to add.
   std::fclose(file_);
   file_ = nullptr;
+  SyncParentFolder(path_);
+}
+
+AtomicPath::AtomicPath(const std::filesystem::path& path) : path_(path) {
+  const TemporaryFile temporary = CreateBeside(path_);
+  temporary_ = temporary.path;
+  descriptor_ = temporary.descriptor;
+}
+
+// As with AtomicFile: its lock ends last.
+AtomicPath::~AtomicPath() {
+  if (descriptor_ < 0) return;
+  unlink(temporary_.c_str());
+  close(descriptor_);
+}
+
+int AtomicPath::GrowthError() const {
+  static constexpr char kBytes[1 << 16] = {};
+  struct stat status {};
+  if (fstat(descriptor_, &status) != 0) return errno;
+  const ssize_t written = pwrite(descriptor_, kBytes, sizeof(kBytes), status.st_size);
+  if (written < 0) return errno;
+  return written < static_cast<ssize_t>(sizeof(kBytes)) ? ENOSPC : 0;
+}
+
+void AtomicPath::Commit() {
+  SEAPOINT_CHECK(descriptor_ >= 0);
+  struct stat ours {
+  }, there{};
+  SEAPOINT_CHECK(fstat(descriptor_, &ours) == 0 && stat(temporary_.c_str(), &there) == 0 &&
+                 ours.st_ino == there.st_ino);
+  if (fsync(descriptor_) != 0) throw SystemError(path_, "cannot be written", errno);
+  RenameInto(temporary_, path_);
+  close(descriptor_);
+  descriptor_ = -1;
   SyncParentFolder(path_);
 }
 

@@ -77,4 +77,19 @@ Eigen::Vector3d MapProjection::FromGeographic(const GeoPosition& position) const
               "choose the system of that place, or correct the position");
 }
 
+std::string WellKnownText(const std::string& crs, const std::string& file) {
+  const Context context(proj_context_create(), &proj_context_destroy);
+  proj_log_level(context.get(), PJ_LOG_NONE);
+  const Object system = Own(proj_create(context.get(), crs.c_str()));
+  const char* text = nullptr;
+  for (const PJ_WKT_TYPE type : {PJ_WKT1_GDAL, PJ_WKT2_2019}) {
+    constexpr const char* kOneLine[] = {"MULTILINE=NO", nullptr};
+    if (text != nullptr || !system || !proj_is_crs(system.get())) continue;
+    text = proj_as_wkt(context.get(), system.get(), type, kOneLine);
+  }
+  if (text != nullptr) return text;
+  throw Error(file, "its reference system '" + crs + "' is none that PROJ knows",
+              "give one as EPSG:32755, or none");
+}
+
 }  // namespace colmap_seapoint

@@ -30,4 +30,10 @@ class MapProjection {
   std::string crs_, name_;
 };
 
+// The well-known text of a reference system, for files that carry it: "EPSG:32755", another
+// authority's code, a PROJ string or a text of any version itself. Version 1 (GDAL's), which every
+// program reads, where it can express the system; else the newest. `file` needs it, for the Error
+// that is thrown when PROJ does not know the system.
+std::string WellKnownText(const std::string& crs, const std::string& file);
+
 }  // namespace colmap_seapoint

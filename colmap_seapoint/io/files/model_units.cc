@@ -34,18 +34,27 @@ ModelUnits FromJson(const Json& json) {
   return units;
 }
 
+ModelUnits Parse(const std::filesystem::path& path, std::istream* stream) {
+  try {
+    return FromJson(Json::parse(*stream));
+  } catch (const Json::exception& error) {
+    throw Error(path.string(), std::string("is no description of units (") + error.what() + ")",
+                "write it again with model_scaler, or remove it: units are arbitrary then");
+  }
+}
+
 }  // namespace
 
 std::optional<ModelUnits> ReadModelUnits(const std::filesystem::path& dir) {
   const std::filesystem::path path = dir / kUnitsFile;
   const std::unique_ptr<InputStream> file = OpenIfThere(path);
   if (file == nullptr) return std::nullopt;
-  try {
-    return FromJson(Json::parse(*file));
-  } catch (const Json::exception& error) {
-    throw Error(path.string(), std::string("is no description of units (") + error.what() + ")",
-                "write it again with model_scaler, or remove it: units are arbitrary then");
-  }
+  return Parse(path, file.get());
+}
+
+ModelUnits ReadModelUnitsFile(const std::filesystem::path& path) {
+  InputStream file(path);
+  return Parse(path, &file);
 }
 
 void WriteModelUnits(const std::filesystem::path& dir, const ModelUnits& units) {
@@ -62,6 +71,15 @@ void WriteModelUnits(const std::filesystem::path& dir, const ModelUnits& units) 
   json["what"] = "coordinates of the files here + offset = coordinates of the frame";
   json["scale_sigma_relative"] = units.is_metric ? Json(units.scale_sigma_relative) : Json();
   WriteTextFile(dir / kUnitsFile, json.dump(2) + "\n");
+}
+
+std::string ReferenceSystem(const ModelUnits& units) {
+  if (!units.is_metric) return "";
+  if (units.frame == "projected") return units.crs;
+  if (units.frame != "east-north-up" || !units.origin) return "";
+  return "+proj=ortho +lat_0=" + Fixed(units.origin->latitude_deg, 12) +
+         " +lon_0=" + Fixed(units.origin->longitude_deg, 12) +
+         " +datum=WGS84 +units=m +no_defs +type=crs";
 }
 
 std::string UnitsWord(const std::optional<ModelUnits>& units) {

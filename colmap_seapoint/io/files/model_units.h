@@ -29,8 +29,15 @@ inline constexpr char kUnitsFile[] = "units.json";
 
 // nullopt when `dir` has no such file. Throws Error when it holds something else.
 std::optional<ModelUnits> ReadModelUnits(const std::filesystem::path& dir);
+// Of a file of any name, which must be there.
+ModelUnits ReadModelUnitsFile(const std::filesystem::path& path);
 // Atomic.
 void WriteModelUnits(const std::filesystem::path& dir, const ModelUnits& units);
+
+// The reference system of `frame`, as WellKnownText() takes it: `crs`, or of east-north-up about an
+// origin the plane that touches the ellipsoid there, which LocalEastNorthUp() keeps to but for
+// 3e-5 of the distance from it (2 cm in 600 m). "" where the frame is nowhere on the Earth.
+std::string ReferenceSystem(const ModelUnits& units);
 
 // "arbitrary" or "metres": for run.json.
 std::string UnitsWord(const std::optional<ModelUnits>& units);
