@@ -138,9 +138,10 @@ struct Dive {
 
 class SurveyColors : public testing::TestWithParam<Dive> {};
 
-// In murky water raw pictures are nearer to the truth than in clear one, in brightness: the veil
-// makes up for what is lost. There the colours are worth less.
-TEST_P(SurveyColors, BalancedIsAtMostHalfAsFarFromTheTruthAsRaw) {
+// The aim is half of raw's difference everywhere. In murky water it is not reached yet: raw
+// pictures are nearer to the truth there, in brightness, since the veil makes up for what is lost.
+// What those dives reach is held.
+TEST_P(SurveyColors, BalancedIsNearerToTheTruthThanRaw) {
   SurveyOptions options;
   options.turbidity = GetParam().turbidity;
   options.altitude = GetParam().altitude;
@@ -163,8 +164,8 @@ TEST_P(SurveyColors, BalancedIsAtMostHalfAsFarFromTheTruthAsRaw) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Dives, SurveyColors,
-                         testing::Values(Dive{"clear", 0.0, 2, 0.5}, Dive{"turbid", 0.7, 2, 0.75},
-                                         Dive{"high", 0.1, 4, 0.5}),
+                         testing::Values(Dive{"clear", 0.0, 2, 0.5}, Dive{"high", 0.1, 4, 0.5},
+                                         Dive{"usual", 0.3, 2, 0.56}, Dive{"turbid", 0.7, 2, 0.7}),
                          [](const auto& dive) { return std::string(dive.param.name); });
 
 }  // namespace
