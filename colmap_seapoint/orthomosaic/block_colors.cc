@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kSamples = 4;           // along each side of a block
 constexpr double kSharpWeight = 0.5;  // of a halving of the contrast, against one of the GSD
+constexpr float kMinBlur = 1.5f;      // times the sharpest: less is noise
 constexpr float kMaxBlur = 8;         // what is duller still is as bad
 
 // The contrast of a pixel with its neighbours, over its brightness.
@@ -96,8 +97,9 @@ void SortSources(Source* sources) {
   }
   for (int k = 0; k < kMaxSources; ++k) {
     if (sources[k].picture == kNoPicture) continue;
-    const float blur = std::min(static_cast<float>(sharpest) / sources[k].sharpness, kMaxBlur);
-    sources[k].cost += static_cast<float>(kSharpWeight) * std::log2(blur);
+    const float blur = static_cast<float>(sharpest) / sources[k].sharpness;
+    sources[k].cost += static_cast<float>(kSharpWeight) *
+                       std::log2(std::clamp(blur, kMinBlur, kMaxBlur) / kMinBlur);
   }
   std::stable_sort(sources, sources + kMaxSources, [](const Source& a, const Source& b) {
     if ((a.picture == kNoPicture) != (b.picture == kNoPicture)) return b.picture == kNoPicture;
@@ -115,7 +117,7 @@ bool IsUsable(const Camera& camera, const Picture& picture, int reduction) {
 }  // namespace
 
 std::vector<PictureUse> LookAtSources(const Relief& relief, const std::vector<MapView>& views,
-                                      int num_threads, PictureCache* pictures,
+                                      int num_threads, MapPictures* pictures,
                                       SourceBlocks* sources) {
   std::vector<PictureUse> use(views.size(), PictureUse::kNotLookedAt);
   const std::vector<std::array<int, 4>> blocks = FootprintBlocks(relief, views);

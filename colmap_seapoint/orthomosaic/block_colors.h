@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "colmap_seapoint/orthomosaic/map_pictures.h"
 #include "colmap_seapoint/orthomosaic/map_view.h"
-#include "colmap_seapoint/orthomosaic/picture_cache.h"
 #include "colmap_seapoint/orthomosaic/source_blocks.h"
 
 namespace colmap_seapoint {
@@ -16,7 +16,7 @@ enum class PictureUse : uint8_t { kNotLookedAt, kUsable, kUnreadable };
 // camera. Then sharper pictures become cheaper, against the sharpest of a block, and the sources of
 // a block are sorted anew. About 2 microseconds a source.
 std::vector<PictureUse> LookAtSources(const Relief& relief, const std::vector<MapView>& views,
-                                      int num_threads, PictureCache* pictures,
+                                      int num_threads, MapPictures* pictures,
                                       SourceBlocks* sources);
 
 }  // namespace colmap_seapoint

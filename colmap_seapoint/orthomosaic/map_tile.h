@@ -8,13 +8,13 @@
 
 namespace colmap_seapoint {
 
-struct GroundFrame;
+struct MapFrame;
 struct MapGrid;
 
 // What a pixel of the relief stands on; 0 where nothing was reconstructed.
 enum SurfaceFlag : uint8_t {
   kMeasured = 1,   // points of the cloud lie in its cell
-  kBridged = 2,    // none does, but in cells on opposite sides of it, next to it
+  kBridged = 2,    // none does, but in a cell next to it, and in one beyond it
   kFilled = 4,     // made up between what lies farther apart: only where that was asked for
   kOverhang = 8,   // another surface lies below
   kUncolored = 16  // no picture that could be read sees it
@@ -38,7 +38,7 @@ class MapTileSink {
  public:
   virtual ~MapTileSink() = default;
   // Once, before any tile.
-  virtual void Begin(const GroundFrame& frame, const MapGrid& grid) = 0;
+  virtual void Begin(const MapFrame& frame, const MapGrid& grid) = 0;
   // Each at most once, in an order that depends on the grid alone.
   virtual void Take(MapTile&& tile) = 0;
 };

@@ -21,7 +21,7 @@ namespace {
 constexpr size_t kGsdPoints = 1000;
 constexpr int kMaxReduction = 8;
 
-std::vector<Eigen::Vector3d> InMap(const GroundFrame& frame, std::vector<Eigen::Vector3d> points) {
+std::vector<Eigen::Vector3d> InMap(const MapFrame& frame, std::vector<Eigen::Vector3d> points) {
   for (Eigen::Vector3d& point : points) point = frame.map_from_cloud * point;
   return points;
 }
@@ -95,7 +95,7 @@ class TileWriter {
   std::vector<uint8_t> is_used_;
 };
 
-void RenderTiles(const MapScene& scene, int num_threads, PictureCache* pictures,
+void RenderTiles(const MapScene& scene, int num_threads, MapPictures* pictures,
                  TileWriter* writer) {
   std::vector<int> tiles = TilesAlongCurve(scene.relief.Grid());
   tiles.erase(std::remove_if(tiles.begin(), tiles.end(),
@@ -118,7 +118,7 @@ OrthomosaicSummary MakeOrthomosaic(const OrthomosaicOptions& options,
                                    const OrthomosaicInputs& inputs, MapTileSink* sink) {
   OrthomosaicSummary summary;
   const std::vector<Eigen::Vector3d> cloud_sample = SampleCloud(inputs.cloud_path);
-  summary.frame = FindGroundFrame(options.plane, inputs.model, cloud_sample, inputs.units);
+  summary.frame = FindMapFrame(options.plane, inputs.model, cloud_sample, inputs.units);
   const std::vector<Eigen::Vector3d> sample = InMap(summary.frame, cloud_sample);
   const std::vector<MapView> views = MakeMapViews(inputs.model, summary.frame.map_from_cloud);
   summary.gsd = FindGsd(views, sample, inputs.cloud_path.string());
@@ -132,8 +132,8 @@ OrthomosaicSummary MakeOrthomosaic(const OrthomosaicOptions& options,
   const Relief relief(cloud, summary.grid, options.fill, options.num_threads,
                       inputs.temporary_folder);
 
-  PictureCache pictures(inputs.read, Reductions(views, ground, summary.grid.pixel_size),
-                        options.picture_bytes);
+  MapPictures pictures(inputs.read, Reductions(views, ground, summary.grid.pixel_size),
+                       options.picture_bytes);
   SourceBlocks sources = FindSources(relief, views, options.num_threads);
   const std::vector<PictureUse> use =
       LookAtSources(relief, views, options.num_threads, &pictures, &sources);

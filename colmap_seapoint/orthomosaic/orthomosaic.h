@@ -11,15 +11,15 @@
 
 #include "colmap_seapoint/base/sparse_model.h"
 #include "colmap_seapoint/io/files/model_units.h"
-#include "colmap_seapoint/orthomosaic/ground_frame.h"
+#include "colmap_seapoint/orthomosaic/map_frame.h"
 #include "colmap_seapoint/orthomosaic/map_grid.h"
+#include "colmap_seapoint/orthomosaic/map_pictures.h"
 #include "colmap_seapoint/orthomosaic/map_tile.h"
-#include "colmap_seapoint/orthomosaic/picture_cache.h"
 
 namespace colmap_seapoint {
 
 struct OrthomosaicOptions {
-  GroundFrameOptions plane;
+  MapFrameOptions plane;
   double pixel_size = 0;  // of the model's unit; 0 = the survey's ground sampling distance
   bool fill = false;      // also what lies between measured cells up to 48 pixels apart; marked
   bool balance = true;    // one brightness and colour for all pictures
@@ -36,7 +36,7 @@ struct OrthomosaicInputs {
 };
 
 struct OrthomosaicSummary {
-  GroundFrame frame;
+  MapFrame frame;
   MapGrid grid;
   double gsd = 0;                    // of the survey, in the model's unit a pixel
   int cell_size = 1;                 // pixels: the relief is as fine as the cloud, no finer

@@ -58,6 +58,7 @@ class CellGrid {
     return static_cast<size_t>(y) * static_cast<size_t>(nx_) + static_cast<size_t>(x);
   }
   void AddLayers(std::vector<TilePoint>* cell);
+  void BridgeBetween(int x, int y, size_t k, int far);
   int Support(int x, int y, float height) const;
 
   int size_;
@@ -163,25 +164,32 @@ void CellGrid::ChooseSurface() {
   }
 }
 
-// Empty cells between two on opposite sides, of the higher surface where several go through.
+// An empty cell between measured ones on opposite sides, one of them next to it and the other at
+// most two away; of the higher surface where several go through.
 void CellGrid::Bridge() {
-  for (int y = 1; y + 1 < ny_; ++y) {
-    for (int x = 1; x + 1 < nx_; ++x) {
-      const size_t at = At(x, y);
-      if (flags_[at] != 0) continue;
-      for (size_t k = 0; k < 4; ++k) {
-        const size_t a = At(x + kAround[k][0], y + kAround[k][1]);
-        const size_t b = At(x - kAround[k][0], y - kAround[k][1]);
-        if ((flags_[a] & flags_[b] & kMeasured) == 0) continue;
-        const float apart = std::abs(surface_[a].height - surface_[b].height);
-        const float height = 0.5f * (surface_[a].height + surface_[b].height);
-        if (apart > 2 * kMaxSlope * kDistance[k % 2]) continue;
-        if (flags_[at] != 0 && height <= surface_[at].height) continue;
-        surface_[at] = {0, 0, height, 0};
-        flags_[at] = kBridged;
+  for (int y = 2; y + 2 < ny_; ++y) {
+    for (int x = 2; x + 2 < nx_; ++x) {
+      if (flags_[At(x, y)] != 0) continue;
+      for (size_t k = 0; k < kAround.size(); ++k) {
+        BridgeBetween(x, y, k, 1);
+        BridgeBetween(x, y, k, 2);
       }
     }
   }
+}
+
+// From the neighbour in direction k to what lies `far` cells on the other side.
+void CellGrid::BridgeBetween(int x, int y, size_t k, int far) {
+  const auto [dx, dy] = kAround[k];
+  const size_t at = At(x, y), a = At(x + dx, y + dy), b = At(x - far * dx, y - far * dy);
+  if ((flags_[a] & flags_[b] & kMeasured) == 0) return;
+  const auto span = static_cast<float>(1 + far);
+  const float rise = surface_[b].height - surface_[a].height;
+  const float height = surface_[a].height + rise / span;
+  if (std::abs(rise) > kMaxSlope * kDistance[k % 2] * span) return;
+  if (flags_[at] != 0 && height <= surface_[at].height) return;
+  surface_[at] = {0, 0, height, 0};
+  flags_[at] = kBridged;
 }
 
 // The nearest cells with a surface to either side along a row and a column, and between them a mean

@@ -30,7 +30,8 @@ struct ReliefOptions {
 // three cells' heights lie between two of them. Its surface is the uppermost part that goes on in
 // two cells around it at least (a fish does not), by the points at its upper end; another such part
 // below, in most of the cells around as well, is an overhang. An empty cell gets a surface only
-// where cells on opposite sides of it, next to it, have one that goes on through it; with `fill`,
+// where a cell next to it and one on the opposite side, at most two away, have one that goes on
+// through it: gaps of two cells close, and nothing grows beyond a border. With `fill`,
 // also between what lies up to 48 pixels apart along row and column. A pixel's height is that of
 // the plane through the cell and those around it that belong to the same surface, weighted by
 // confidence and nearness. Pure; about 0.15 microseconds a point and as much a cell.

@@ -44,7 +44,7 @@ struct Sum {  // of what pictures show of a pixel
 
 class TileCanvas {
  public:
-  TileCanvas(const MapScene& scene, int tile_idx, PictureCache* pictures)
+  TileCanvas(const MapScene& scene, int tile_idx, MapPictures* pictures)
       : scene_(scene),
         box_(scene.relief.Grid().Tile(tile_idx)),
         relief_(scene.relief.Read(tile_idx)),
@@ -71,7 +71,7 @@ class TileCanvas {
   const MapGrid::Box box_;
   ReliefTile relief_;
   LineOfSight sight_;
-  PictureCache& pictures_;
+  MapPictures& pictures_;
   std::vector<Sum> sums_;
   Image<int32_t> source_;
 };
@@ -242,7 +242,7 @@ MapTile TileCanvas::Finish() {
 
 }  // namespace
 
-MapTile RenderTile(const MapScene& scene, int tile_idx, PictureCache* pictures) {
+MapTile RenderTile(const MapScene& scene, int tile_idx, MapPictures* pictures) {
   TileCanvas canvas(scene, tile_idx, pictures);
   canvas.DrawChosen();
   canvas.DrawOthers();

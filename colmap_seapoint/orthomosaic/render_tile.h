@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "colmap_seapoint/orthomosaic/exposure.h"
+#include "colmap_seapoint/orthomosaic/map_pictures.h"
 #include "colmap_seapoint/orthomosaic/map_tile.h"
 #include "colmap_seapoint/orthomosaic/map_view.h"
-#include "colmap_seapoint/orthomosaic/picture_cache.h"
 #include "colmap_seapoint/orthomosaic/source_blocks.h"
 
 namespace colmap_seapoint {
@@ -24,6 +24,6 @@ struct MapScene {  // all that a tile is drawn from
 // that does not show the place (outside of it, masked, hidden by the surface) does not count; where
 // none of the chosen ones shows it, the cheapest of the block's other sources does. Nothing is
 // coloured otherwise. The tile must have a surface. About 0.15 microseconds a pixel.
-MapTile RenderTile(const MapScene& scene, int tile_idx, PictureCache* pictures);
+MapTile RenderTile(const MapScene& scene, int tile_idx, MapPictures* pictures);
 
 }  // namespace colmap_seapoint

@@ -10,7 +10,7 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr int kRounds = 8;
-constexpr float kSeamCost = 0.15f;          // of a seam where both pictures look the same
+constexpr float kSeamCost = 0.3f;           // of a seam where both pictures look the same
 constexpr float kDifferenceCost = 2;        // of one where they differ by a factor of e
 constexpr float kUnknownDifference = 0.5f;  // where one of them does not see the other's block
 

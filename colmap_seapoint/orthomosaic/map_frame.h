@@ -18,7 +18,7 @@ enum class MapPlane {
   kFitted  // the best plane of the cloud
 };
 
-struct GroundFrameOptions {
+struct MapFrameOptions {
   MapPlane plane = MapPlane::kAuto;
   // What the map is seen along, towards the eye, in the cloud's frame; decides over `plane`.
   std::optional<Eigen::Vector3d> towards_eye;
@@ -28,7 +28,7 @@ struct GroundFrameOptions {
 
 enum class PlaneKind { kLevel, kFitted, kWall, kGiven };
 
-struct GroundFrame {
+struct MapFrame {
   Rigid3d map_from_cloud;  // map: x right, y up on the map, z towards the eye: heights
   PlaneKind kind = PlaneKind::kFitted;
   bool is_north_up = false;  // y is the north of the model's own frame, x its east
@@ -39,8 +39,8 @@ struct GroundFrame {
 // the rest does, and is seen from the cameras' side. Where the model tells no north, the pictures'
 // own upright is up on the map if they agree on one, else the longest extent lies to the right; of
 // a wall in a level model, up is up. Throws Error for directions that are zero, or parallel.
-GroundFrame FindGroundFrame(const GroundFrameOptions& options, const SparseModel& model,
-                            const std::vector<Eigen::Vector3d>& sample,
-                            const std::optional<ModelUnits>& units);
+MapFrame FindMapFrame(const MapFrameOptions& options, const SparseModel& model,
+                      const std::vector<Eigen::Vector3d>& sample,
+                      const std::optional<ModelUnits>& units);
 
 }  // namespace colmap_seapoint

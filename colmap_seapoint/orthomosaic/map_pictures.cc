@@ -1,4 +1,4 @@
-#include "colmap_seapoint/orthomosaic/picture_cache.h"
+#include "colmap_seapoint/orthomosaic/map_pictures.h"
 
 #include <algorithm>
 #include <utility>
@@ -37,11 +37,10 @@ Picture HalvedPicture(const Picture& picture) {
   return half;
 }
 
-PictureCache::PictureCache(const MapPictureReader& read, std::vector<int> reduction,
-                           size_t max_bytes)
+MapPictures::MapPictures(const MapPictureReader& read, std::vector<int> reduction, size_t max_bytes)
     : read_(read), reduction_(std::move(reduction)), max_bytes_(max_bytes) {}
 
-std::shared_ptr<const Picture> PictureCache::Get(uint32_t picture) {
+std::shared_ptr<const Picture> MapPictures::Get(uint32_t picture) {
   {
     std::unique_lock<std::mutex> lock(mutex_);
     for (auto found = entries_.find(picture); found != entries_.end();
@@ -72,7 +71,7 @@ std::shared_ptr<const Picture> PictureCache::Get(uint32_t picture) {
 }
 
 // Never the one that came last.
-void PictureCache::DropOldest() {
+void MapPictures::DropOldest() {
   while (bytes_ > max_bytes_) {
     auto oldest = entries_.end();
     size_t num_kept = 0;

@@ -17,12 +17,12 @@ namespace colmap_seapoint {
 // says why). From several threads, each picture in one of them at a time.
 using MapPictureReader = std::function<Picture(size_t picture)>;
 
-class PictureCache {
+class MapPictures {
  public:
   // `read` must outlive it. Beside pictures in use, at most `max_bytes` of them are kept.
   // `reduction`, by picture: how often both sides are halved (each pixel the mean of four) where
   // the map is coarser than the picture.
-  PictureCache(const MapPictureReader& read, std::vector<int> reduction, size_t max_bytes);
+  MapPictures(const MapPictureReader& read, std::vector<int> reduction, size_t max_bytes);
 
   // Waits where another thread is reading it. Never null; may be empty.
   std::shared_ptr<const Picture> Get(uint32_t picture);

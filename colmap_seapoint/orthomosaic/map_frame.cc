@@ -1,4 +1,4 @@
-#include "colmap_seapoint/orthomosaic/ground_frame.h"
+#include "colmap_seapoint/orthomosaic/map_frame.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -110,7 +110,7 @@ Eigen::Vector3d UnitDirection(const Eigen::Vector3d& direction) {
   return direction.normalized();
 }
 
-PlaneKind KindOf(const GroundFrameOptions& options, const Plane& plane, bool knows_up) {
+PlaneKind KindOf(const MapFrameOptions& options, const Plane& plane, bool knows_up) {
   if (options.towards_eye) return PlaneKind::kGiven;
   if (options.plane == MapPlane::kModel) return PlaneKind::kLevel;
   const bool is_wall =
@@ -124,7 +124,7 @@ struct MapUp {
   std::string text;
 };
 
-MapUp FindUp(const GroundFrameOptions& options, const SparseModel& model, const Plane& plane,
+MapUp FindUp(const MapFrameOptions& options, const SparseModel& model, const Plane& plane,
              const Eigen::Vector3d& normal, PlaneKind kind, bool knows_north) {
   if (options.up) return {UnitDirection(*options.up), "up as given"};
   if (kind == PlaneKind::kWall) return {Eigen::Vector3d::UnitZ(), "up is up"};
@@ -155,11 +155,11 @@ std::string PlaneText(PlaneKind kind) {
 
 }  // namespace
 
-GroundFrame FindGroundFrame(const GroundFrameOptions& options, const SparseModel& model,
-                            const Points& sample, const std::optional<ModelUnits>& units) {
+MapFrame FindMapFrame(const MapFrameOptions& options, const SparseModel& model,
+                      const Points& sample, const std::optional<ModelUnits>& units) {
   SEAPOINT_CHECK(!sample.empty());
   const Plane plane = RobustPlane(sample);
-  GroundFrame frame;
+  MapFrame frame;
   frame.kind = KindOf(options, plane, KnowsUp(units));
   Eigen::Vector3d normal = TowardsCameras(model, plane);
   if (frame.kind == PlaneKind::kGiven) normal = UnitDirection(*options.towards_eye);
