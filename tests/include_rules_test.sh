@@ -36,7 +36,7 @@ colmap_seapoint/markers         colmap_seapoint/base
 colmap_seapoint/georeference    colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/navigation colmap_seapoint/markers
 colmap_seapoint/navigation      colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/navigation colmap_seapoint/georeference colmap_seapoint/pictures
 colmap_seapoint/compare         colmap_seapoint/base colmap_seapoint/io/cloud
-colmap_seapoint/orthomosaic     colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/cloud colmap_seapoint/compare
+colmap_seapoint/orthomosaic     colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/cloud
 colmap_seapoint/tracks          colmap_seapoint/base colmap_seapoint/io/colmap
 colmap_seapoint/adjustment/equations colmap_seapoint/base
 colmap_seapoint/adjustment      colmap_seapoint/base colmap_seapoint/adjustment/equations

@@ -168,17 +168,22 @@ class ExposureSystem {
       for (int node = 0; node < Exposure::kNumNodes; ++node) {
         entries->emplace_back(first + node, first + node, kLevelPrior);
         const int x = node % Exposure::kNodesX, y = node / Exposure::kNodesX;
-        if (x > 0) AddSmoothness(first + node, first + node - 1, entries);
-        if (y > 0) AddSmoothness(first + node, first + node - Exposure::kNodesX, entries);
+        const bool is_inner_x = x > 0 && x + 1 < Exposure::kNodesX;
+        const bool is_inner_y = y > 0 && y + 1 < Exposure::kNodesY;
+        if (is_inner_x) AddSmoothness(first + node, 1, entries);
+        if (is_inner_y) AddSmoothness(first + node, Exposure::kNodesX, entries);
       }
     }
   }
 
-  static void AddSmoothness(int a, int b, std::vector<Eigen::Triplet<double>>* entries) {
-    entries->emplace_back(a, a, kSmoothPrior);
-    entries->emplace_back(b, b, kSmoothPrior);
-    entries->emplace_back(a, b, -kSmoothPrior);
-    entries->emplace_back(b, a, -kSmoothPrior);
+  // Of a node between two others, which lie `step` before and behind.
+  static void AddSmoothness(int node, int step, std::vector<Eigen::Triplet<double>>* entries) {
+    constexpr double kBend[3] = {1, -2, 1};
+    for (int i = 0; i < 9; ++i) {
+      const int a = i / 3, b = i % 3;
+      entries->emplace_back(node + (a - 1) * step, node + (b - 1) * step,
+                            kSmoothPrior * kBend[a] * kBend[b]);
+    }
   }
 
   int num_pictures_;

@@ -4,10 +4,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/median.h"
-#include "colmap_seapoint/compare/plan_view.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -18,6 +18,8 @@ constexpr double kWallCosine = 0.5;   // of the angle between a wall's normal an
 constexpr double kAgreeing = 0.7;     // length of the mean of unit vectors that agree
 constexpr double kMinThinness = 0.3;  // of a plane: its thickness over its smaller extent
 constexpr int kPlaneRounds = 10;
+constexpr int kMedianTrials = 300;
+constexpr size_t kMedianPoints = 1000;
 constexpr double kOutlierFactor = 3.5;  // times the median distance
 
 struct Plane {
@@ -37,17 +39,43 @@ Plane PlaneThrough(const Points& points) {
           values[1] > 0 ? std::sqrt(values[0] / values[1]) : 1};
 }
 
-// Points that are far from the plane of the others, for their number, do not tilt it.
+std::vector<double> DistancesTo(const Plane& plane, const Points& points) {
+  std::vector<double> distances;
+  distances.reserve(points.size());
+  for (const Eigen::Vector3d& xyz : points) {
+    distances.push_back(std::abs(plane.normal.dot(xyz - plane.center)));
+  }
+  return distances;
+}
+
+// The plane through three points, of many threes, that half of all points are nearest to: least
+// median of squares. What the other half does is all the same.
+Plane PlaneOfMost(const Points& sample) {
+  Points few;
+  for (size_t i = 0; i < sample.size(); i += sample.size() / kMedianPoints + 1) {
+    few.push_back(sample[i]);
+  }
+  Plane best = PlaneThrough(few);
+  double least = UpperMedian(DistancesTo(best, few));
+  std::mt19937_64 random(1);  // its numbers are the standard's own: the same everywhere
+  for (int i = 0; i < kMedianTrials; ++i) {
+    const Points three = {few[random() % few.size()], few[random() % few.size()],
+                          few[random() % few.size()]};
+    const Plane plane = PlaneThrough(three);
+    if (plane.thinness == 1) continue;  // three points of one line
+    const double median = UpperMedian(DistancesTo(plane, few));
+    if (median >= least) continue;
+    least = median;
+    best = plane;
+  }
+  return best;
+}
+
+// Points that are far from the plane of most do not tilt it; all others do.
 Plane RobustPlane(const Points& sample) {
-  const PlanView view = FitPlanView(sample, {}, Eigen::Vector3d::Zero());
-  Plane plane{view.center, view.axes.row(0), view.axes.row(2), 1};
+  Plane plane = PlaneOfMost(sample);
   for (int round = 0; round < kPlaneRounds; ++round) {
-    std::vector<double> offsets, distances;
-    for (const Eigen::Vector3d& xyz : sample) {
-      offsets.push_back(plane.normal.dot(xyz - plane.center));
-    }
-    const double middle = UpperMedian(offsets);
-    for (const double offset : offsets) distances.push_back(std::abs(offset - middle));
+    const std::vector<double> distances = DistancesTo(plane, sample);
     const double limit = kOutlierFactor * UpperMedian(distances);
     Points near;
     for (size_t i = 0; i < sample.size(); ++i) {

@@ -1,5 +1,6 @@
 #include "colmap_seapoint/orthomosaic/relief_tile.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -47,11 +48,10 @@ class CellGrid {
   void ChooseSurface();
   void Bridge();
   void Fill();
+  void MarkOverhangs();
   // Height of a pixel of the tile, in cells.
   Plane PlaneAt(int x, int y) const;
   uint8_t Flags(int x, int y) const { return flags_[At(x, y)]; }
-  int Size() const { return size_; }
-  float Unit() const { return unit_; }
 
  private:
   size_t At(int x, int y) const {
@@ -68,6 +68,7 @@ class CellGrid {
   std::vector<uint32_t> first_layer_;  // by cell, and the end
   std::vector<Layer> surface_;         // weight 0: none
   std::vector<uint8_t> flags_;
+  std::vector<uint8_t> has_lower_;  // another layer that goes on around, below the surface
 };
 
 // Points become layers, cell by cell: positions from the cell's centre, all in cells.
@@ -142,24 +143,16 @@ int CellGrid::Support(int x, int y, float height) const {
 void CellGrid::ChooseSurface() {
   surface_.assign(first_layer_.size() - 1, {});
   flags_.assign(surface_.size(), 0);
-  std::vector<uint8_t> has_lower(surface_.size(), 0);
+  has_lower_.assign(surface_.size(), 0);
   for (int y = 1; y + 1 < ny_; ++y) {
     for (int x = 1; x + 1 < nx_; ++x) {
       const size_t at = At(x, y);
       for (uint32_t i = first_layer_[at]; i < first_layer_[at + 1]; ++i) {
         if (Support(x, y, layers_[i].height) < kMinSupport) continue;
-        if (flags_[at] != 0) has_lower[at] = 1;
+        if (flags_[at] != 0) has_lower_[at] = 1;
         if (flags_[at] == 0) surface_[at] = layers_[i];
         flags_[at] = kMeasured;
       }
-    }
-  }
-  for (int y = 1; y + 1 < ny_; ++y) {
-    for (int x = 1; x + 1 < nx_; ++x) {
-      int num_lower = has_lower[At(x, y)];
-      if (num_lower == 0) continue;
-      for (const auto& [dx, dy] : kAround) num_lower += has_lower[At(x + dx, y + dy)];
-      if (num_lower >= kMinOverhangCells) flags_[At(x, y)] |= kOverhang;
     }
   }
 }
@@ -183,12 +176,19 @@ void CellGrid::BridgeBetween(int x, int y, size_t k, int far) {
   const auto [dx, dy] = kAround[k];
   const size_t at = At(x, y), a = At(x + dx, y + dy), b = At(x - far * dx, y - far * dy);
   if ((flags_[a] & flags_[b] & kMeasured) == 0) return;
-  const auto span = static_cast<float>(1 + far);
-  const float rise = surface_[b].height - surface_[a].height;
-  const float height = surface_[a].height + rise / span;
-  if (std::abs(rise) > kMaxSlope * kDistance[k % 2] * span) return;
-  if (flags_[at] != 0 && height <= surface_[at].height) return;
-  surface_[at] = {0, 0, height, 0};
+  const auto reach = static_cast<float>(far);
+  const auto fx = static_cast<float>(dx), fy = static_cast<float>(dy);
+  const Eigen::Vector3f from(fx + surface_[a].x, fy + surface_[a].y, surface_[a].height);
+  const Eigen::Vector3f to(surface_[b].x - reach * fx, surface_[b].y - reach * fy,
+                           surface_[b].height);
+  const Eigen::Vector3f way = to - from;
+  if (std::abs(way.z()) > kMaxSlope * kDistance[k % 2] * (1 + reach)) return;
+  // The place on the line between both that is nearest to the cell's centre.
+  const float share = -from.head<2>().dot(way.head<2>()) / way.head<2>().squaredNorm();
+  const Eigen::Vector3f place = from + std::clamp(share, 0.0f, 1.0f) * way;
+  if (flags_[at] != 0 && place.z() <= surface_[at].height) return;
+  surface_[at] = {place.x(), place.y(), place.z(),
+                  std::min(surface_[a].weight, surface_[b].weight)};
   flags_[at] = kBridged;
 }
 
@@ -214,6 +214,18 @@ void CellGrid::Fill() {
       if (num_sides < 4) continue;
       surface_[At(x, y)] = {0, 0, sum / weights, 0};
       flags_[At(x, y)] = kFilled;
+    }
+  }
+}
+
+// A cliff's edge, one cell wide, has points of both its levels too, and is none.
+void CellGrid::MarkOverhangs() {
+  for (int y = 1; y + 1 < ny_; ++y) {
+    for (int x = 1; x + 1 < nx_; ++x) {
+      if (flags_[At(x, y)] == 0) continue;
+      int num_lower = has_lower_[At(x, y)];
+      for (const auto& [dx, dy] : kAround) num_lower += has_lower_[At(x + dx, y + dy)];
+      if (num_lower >= kMinOverhangCells) flags_[At(x, y)] |= kOverhang;
     }
   }
 }
@@ -250,11 +262,11 @@ Plane CellGrid::PlaneAt(int x, int y) const {
 }
 
 // The pixels of one cell that lie in the tile and its margin.
-void DrawCell(const CellGrid& cells, int x, int y, double base_height, ReliefTile* tile) {
+void DrawCell(const CellGrid& cells, int x, int y, const ReliefOptions& options, ReliefTile* tile) {
   const uint8_t flags = cells.Flags(x, y);
   if (flags == 0) return;
   const Plane plane = cells.PlaneAt(x, y);
-  const int size = cells.Size();
+  const int size = options.cell_size;
   const auto side = static_cast<float>(size);
   for (int py = 0; py < size; ++py) {
     for (int px = 0; px < size; ++px) {
@@ -264,7 +276,7 @@ void DrawCell(const CellGrid& cells, int x, int y, double base_height, ReliefTil
       const float dy = (static_cast<float>(py) + 0.5f) / side - 0.5f;
       const float height = plane.height + plane.slope_x * dx + plane.slope_y * dy;
       tile->heights.At(column + kReliefMargin, row + kReliefMargin) =
-          static_cast<float>(base_height + double{height} * double{cells.Unit()});
+          static_cast<float>(options.base_height + double{height} * size * options.pixel_size);
       if (tile->surface.Contains(column, row)) tile->surface.At(column, row) = flags;
     }
   }
@@ -281,6 +293,7 @@ ReliefTile MakeReliefTile(const ReliefOptions& options, const std::vector<TilePo
   cells.ChooseSurface();
   cells.Bridge();
   if (options.fill) cells.Fill();
+  cells.MarkOverhangs();
   tile.heights =
       FloatImage(box.width + 2 * kReliefMargin, box.height + 2 * kReliefMargin, 1, kNoHeight);
   tile.surface = Image<uint8_t>(box.width, box.height);
@@ -288,7 +301,7 @@ ReliefTile MakeReliefTile(const ReliefOptions& options, const std::vector<TilePo
   const int end_x = (kTileHalo + box.width + kReliefMargin) / options.cell_size;
   const int end_y = (kTileHalo + box.height + kReliefMargin) / options.cell_size;
   for (int y = first; y <= end_y; ++y) {
-    for (int x = first; x <= end_x; ++x) DrawCell(cells, x, y, options.base_height, &tile);
+    for (int x = first; x <= end_x; ++x) DrawCell(cells, x, y, options, &tile);
   }
   return tile;
 }

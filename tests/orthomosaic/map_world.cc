@@ -9,7 +9,7 @@
 namespace colmap_seapoint {
 namespace {
 
-constexpr double kDepth = 2, kTableDepth = 1.7, kSpacing = 0.004;
+constexpr double kDepth = 2, kTableDepth = 1.7, kSpacing = 0.0064;
 
 template <typename T>
 void Paste(const Image<T>& tile, int x, int y, Image<T>* whole) {
@@ -22,7 +22,7 @@ void Paste(const Image<T>& tile, int x, int y, Image<T>* whole) {
 World TableWorld() {
   return World(
       {{{0, 0, kDepth}, {20, 0, 0}, {0, 20, 0}}, {{0, 0, kTableDepth}, {0.2, 0, 0}, {0, 0.15, 0}}},
-      NoiseTexture(7, 0.16, 3));
+      NoiseTexture(7, 0.24, 3));
 }
 
 ColorImage Darkened(ColorImage picture, double gain) {
@@ -83,8 +83,8 @@ std::vector<Viewpoint> MapWorld::Viewpoints() const {
 
 MapWorld MakeMapWorld(const std::filesystem::path& folder,
                       const std::function<double(size_t)>& gain) {
-  MapWorld world{TableWorld(), {}, {}, folder / "fused.ply", 0.005};
-  world.model.cameras[1] = MildCamera(CameraModel::kRadial, 400, 320, 240);
+  MapWorld world{TableWorld(), {}, {}, folder / "fused.ply", 0.008};
+  world.model.cameras[1] = MildCamera(CameraModel::kRadial, 250, 200, 150);
   world.model.cameras[1].camera_id = 1;
   for (size_t i = 0; i < 6; ++i) {
     PosedImage image;

@@ -40,10 +40,9 @@ struct MapWorld {
   }
 };
 
-// Two rows of three pictures of 320 x 240 pixels, 2 (0.005 a pixel) above the ground z = 2; a table
-// of 0.4 x 0.3 stands 0.3 above the middle of it. `gain` darkens a picture, `turn` turns the whole
-// world. The cloud lies in `folder`: every place that any camera sees, 0.004 apart, but none
-// where x > 0.9.
+// Two rows of three pictures of 200 x 150 pixels, 2 (0.008 a pixel) above the ground z = 2; a table
+// of 0.4 x 0.3 stands 0.3 above the middle of it. `gain` darkens a picture. The cloud lies in
+// `folder`: every place that any camera sees, 0.0064 apart, but none where x > 0.9.
 MapWorld MakeMapWorld(const std::filesystem::path& folder,
                       const std::function<double(size_t)>& gain);
 

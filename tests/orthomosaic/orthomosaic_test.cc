@@ -98,7 +98,7 @@ TEST_F(OrthomosaicTest, IsTrueInPlanAndHeightAndMakesNothingUp) {
     }
   }
   std::sort(height_errors.begin(), height_errors.end());
-  ASSERT_GT(height_errors.size(), 50000u);
+  ASSERT_GT(height_errors.size(), 20000u);
   EXPECT_LT(height_errors[height_errors.size() / 2], 0.05);
   EXPECT_LT(height_errors[height_errors.size() * 97 / 100], 0.4);
   std::vector<double> shifts;
@@ -114,7 +114,7 @@ TEST_F(OrthomosaicTest, IsTrueInPlanAndHeightAndMakesNothingUp) {
     }
   }
   std::sort(shifts.begin(), shifts.end());
-  ASSERT_GT(shifts.size(), 300u);
+  ASSERT_GT(shifts.size(), 100u);
   EXPECT_LT(shifts[shifts.size() * 95 / 100], 0.3);
 }
 
@@ -133,10 +133,12 @@ TEST_F(OrthomosaicTest, ColoursWhatTheCloudCoversAndFlagsTheTable) {
   for (int y = 0; y < map_.grid.height; ++y) {
     for (int x = 0; x < map_.grid.width; ++x) {
       const bool is_flagged = (map_.whole.surface.At(x, y) & kOverhang) != 0;
-      const bool is_table = TruthAt(world, x + 0.5, y + 0.5).z() < 1.8;
+      const Eigen::Vector3d place = TruthAt(world, x + 0.5, y + 0.5);
+      const bool is_table = place.z() < 1.8;
+      const double beside = std::max(std::abs(place.x()) - 0.2, std::abs(place.y()) - 0.15);
       num_overhang += is_flagged && is_table;
       num_table += is_table;
-      if (!is_table) {
+      if (beside > 1.5 * world.gsd) {
         EXPECT_FALSE(is_flagged) << x << " " << y;
       }
     }
@@ -158,32 +160,34 @@ TEST_F(OrthomosaicTest, TheTableCastsNoGhost) {
     for (int x = 0; x < map_.grid.width; ++x) {
       const Eigen::Vector3d place = TruthAt(world, x + 0.5, y + 0.5);
       const double beside = std::max(std::abs(place.x()) - 0.2, std::abs(place.y()) - 0.15);
-      if (!HasColor(x, y) || beside < 0.01 || beside > 0.15) continue;
+      if (!HasColor(x, y) || beside < 0.016 || beside > 0.15) continue;
       ++num_near;
       num_wrong += std::abs(map_.whole.rgba.At(x, y, 0) - world.world.ColorAt(place)[0]) > 40;
     }
   }
-  ASSERT_GT(num_near, 5000);
+  ASSERT_GT(num_near, 2000);
   EXPECT_LT(num_wrong, num_near / 50);
 }
 
 TEST_F(OrthomosaicTest, SeamsAreNoStepsWhereExposureChanges) {
   const MapWorld world = MakeMapWorld(dir_.Path(), EveryOtherDark);
-  const auto steps = [&] {
-    std::vector<double> across, inside;
+  const auto steps = [&] {  // at seams, over what the world's own are there
+    double across = 0, inside = 0;
+    int count = 0;
     for (int y = 0; y < map_.grid.height; ++y) {
       for (int x = 1; x + 1 < map_.grid.width; ++x) {
         const int32_t left = map_.whole.source.At(x - 1, y), right = map_.whole.source.At(x + 1, y);
-        if (left < 0 || right < 0) continue;
-        const int step = map_.whole.rgba.At(x + 1, y, 1) - map_.whole.rgba.At(x - 1, y, 1);
-        (left == right ? inside : across).push_back(std::abs(step));
+        if (left < 0 || right < 0 || left == right) continue;
+        const Eigen::Vector3d a = TruthAt(world, x - 0.5, y + 0.5);
+        const Eigen::Vector3d b = TruthAt(world, x + 1.5, y + 0.5);
+        if (a.z() != b.z()) continue;  // the table's edge
+        across += std::abs(map_.whole.rgba.At(x + 1, y, 1) - map_.whole.rgba.At(x - 1, y, 1));
+        inside += std::abs(world.world.ColorAt(a)[1] - world.world.ColorAt(b)[1]);
+        ++count;
       }
     }
-    EXPECT_GT(across.size(), 300u);
-    double sum_across = 0, sum_inside = 0;
-    for (const double step : across) sum_across += step;
-    for (const double step : inside) sum_inside += step;
-    return sum_across / across.size() / (sum_inside / inside.size());
+    EXPECT_GT(count, 200);
+    return across / inside;
   };
   OrthomosaicOptions options;
   Make(world, options);
@@ -196,7 +200,7 @@ TEST_F(OrthomosaicTest, SeamsAreNoStepsWhereExposureChanges) {
 TEST_F(OrthomosaicTest, AnyNumberOfThreadsGivesTheSameBytes) {
   const MapWorld world = MakeMapWorld(dir_.Path(), EveryOtherDark);
   OrthomosaicOptions options;
-  options.pixel_size = 0.0011;  // several tiles
+  options.pixel_size = 0.0018;  // several tiles
   options.picture_bytes = 1;    // nothing is kept
   num_threads_ = 1;
   Make(world, options);
@@ -218,7 +222,7 @@ TEST_F(OrthomosaicTest, TilesDoNotShow) {
   const MapWorld world = MakeMapWorld(dir_.Path(), NoGain);
   OrthomosaicOptions options;
   options.balance = false;
-  options.pixel_size = 0.0011;
+  options.pixel_size = 0.0018;
   Make(world, options);
   double at_border = 0, elsewhere = 0;
   int num_at_border = 0, num_elsewhere = 0;
@@ -236,10 +240,10 @@ TEST_F(OrthomosaicTest, TilesDoNotShow) {
 
 TEST_F(OrthomosaicTest, MasksAndUnreadablePicturesGiveNoColour) {
   MapWorld world = MakeMapWorld(dir_.Path(), NoGain);
-  world.pictures[1] = Picture();                         // unreadable
-  world.pictures[2].luma = GrayImage(320, 100, 1, 128);  // another shape
-  world.pictures[4].mask = GrayImage(320, 240, 1, 255);
-  for (int y = 0; y < 120; ++y) std::fill_n(world.pictures[4].mask.Row(y), 320, uint8_t{0});
+  world.pictures[1] = Picture();                        // unreadable
+  world.pictures[2].luma = GrayImage(200, 70, 1, 128);  // another shape
+  world.pictures[4].mask = GrayImage(200, 150, 1, 255);
+  for (int y = 0; y < 75; ++y) std::fill_n(world.pictures[4].mask.Row(y), 200, uint8_t{0});
   const OrthomosaicSummary summary = Make(world);
   EXPECT_EQ(summary.pictures_unread, (std::vector<size_t>{1, 2}));
   EXPECT_EQ(summary.pictures_used, (std::vector<size_t>{0, 3, 4, 5}));
@@ -254,10 +258,10 @@ TEST_F(OrthomosaicTest, MasksAndUnreadablePicturesGiveNoColour) {
       const auto pixel = PixelOf(world.world, viewpoints[4], TruthAt(world, x + 0.5, y + 0.5));
       if (!pixel) continue;
       ++num_of_masked;
-      EXPECT_GT(pixel->y(), 118);
+      EXPECT_GT(pixel->y(), 73);
     }
   }
-  EXPECT_GT(num_of_masked, 1000);
+  EXPECT_GT(num_of_masked, 500);
 }
 
 TEST_F(OrthomosaicTest, PicturesOfOtherResolutionsFit) {
@@ -280,10 +284,10 @@ TEST_F(OrthomosaicTest, PicturesOfOtherResolutionsFit) {
 TEST_F(OrthomosaicTest, ACoarseMapMeansThePixels) {
   const MapWorld world = MakeMapWorld(dir_.Path(), NoGain);
   OrthomosaicOptions options;
-  options.pixel_size = 0.02;  // four times the GSD
+  options.pixel_size = 0.032;  // four times the GSD
   const OrthomosaicSummary summary = Make(world, options);
-  EXPECT_EQ(summary.grid.pixel_size, 0.02);
-  EXPECT_GT(summary.num_colored_pixels, 3000u);
+  EXPECT_EQ(summary.grid.pixel_size, 0.032);
+  EXPECT_GT(summary.num_colored_pixels, 1000u);
 }
 
 TEST_F(OrthomosaicTest, OddInputsEndInOneLine) {

@@ -32,7 +32,7 @@ class SourceWorld {
     cloud.Finish();
     const CloudTiles tiles(dir_ / "flat.ply", {}, grid, 0, dir_.Path());
     relief_ = std::make_unique<Relief>(tiles, grid, false, 1, dir_.Path());
-    Camera camera = MakeCamera(CameraModel::kPinhole, 400, 480, 400);
+    Camera camera = MakeCamera(CameraModel::kPinhole, 400, 480, 500);
     camera.camera_id = 1;
     for (int i = 0; i < num_pictures; ++i) {
       const double x = (i % (num_pictures / 2) + 0.5) * grid.width / (num_pictures / 2);
@@ -57,7 +57,7 @@ class SourceWorld {
         source.sharpness = 100;
         const Eigen::Vector2d place =
             views_[source.picture].PixelOf(PlaceInBlock(*relief_, x, y))->array() /
-            Eigen::Array2d(480, 400);
+            Eigen::Array2d(480, 500);
         for (size_t c = 0; c < 3; ++c) {
           const double ground = 0.3 + 0.15 * std::sin(1.3 * x + 0.7 * y + static_cast<double>(c));
           source.rgb[c] = ScreenOf(static_cast<float>(ground * factor(source.picture, place, c)));
