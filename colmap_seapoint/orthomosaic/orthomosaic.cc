@@ -8,12 +8,12 @@
 #include "colmap_seapoint/base/median.h"
 #include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/base/progress.h"
-#include "colmap_seapoint/orthomosaic/block_colors.h"
-#include "colmap_seapoint/orthomosaic/cloud_tiles.h"
-#include "colmap_seapoint/orthomosaic/exposure.h"
-#include "colmap_seapoint/orthomosaic/relief.h"
+#include "colmap_seapoint/orthomosaic/relief/cloud_tiles.h"
+#include "colmap_seapoint/orthomosaic/relief/relief.h"
 #include "colmap_seapoint/orthomosaic/render_tile.h"
-#include "colmap_seapoint/orthomosaic/seams.h"
+#include "colmap_seapoint/orthomosaic/sources/block_colors.h"
+#include "colmap_seapoint/orthomosaic/sources/exposure.h"
+#include "colmap_seapoint/orthomosaic/sources/seams.h"
 
 namespace colmap_seapoint {
 namespace {

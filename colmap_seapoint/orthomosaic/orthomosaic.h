@@ -11,10 +11,10 @@
 
 #include "colmap_seapoint/base/sparse_model.h"
 #include "colmap_seapoint/io/files/model_units.h"
-#include "colmap_seapoint/orthomosaic/map_frame.h"
-#include "colmap_seapoint/orthomosaic/map_grid.h"
-#include "colmap_seapoint/orthomosaic/map_pictures.h"
-#include "colmap_seapoint/orthomosaic/map_tile.h"
+#include "colmap_seapoint/orthomosaic/ground/map_frame.h"
+#include "colmap_seapoint/orthomosaic/ground/map_grid.h"
+#include "colmap_seapoint/orthomosaic/ground/map_tile.h"
+#include "colmap_seapoint/orthomosaic/sources/map_pictures.h"
 
 namespace colmap_seapoint {
 

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "colmap_seapoint/orthomosaic/line_of_sight.h"
+#include "colmap_seapoint/orthomosaic/relief/line_of_sight.h"
 
 namespace colmap_seapoint {
 namespace {

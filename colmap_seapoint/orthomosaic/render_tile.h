@@ -3,11 +3,11 @@
 
 #include <vector>
 
-#include "colmap_seapoint/orthomosaic/exposure.h"
-#include "colmap_seapoint/orthomosaic/map_pictures.h"
-#include "colmap_seapoint/orthomosaic/map_tile.h"
-#include "colmap_seapoint/orthomosaic/map_view.h"
-#include "colmap_seapoint/orthomosaic/source_blocks.h"
+#include "colmap_seapoint/orthomosaic/ground/map_tile.h"
+#include "colmap_seapoint/orthomosaic/ground/map_view.h"
+#include "colmap_seapoint/orthomosaic/sources/exposure.h"
+#include "colmap_seapoint/orthomosaic/sources/map_pictures.h"
+#include "colmap_seapoint/orthomosaic/sources/source_blocks.h"
 
 namespace colmap_seapoint {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "colmap_seapoint/io/cloud/ply.h"
-#include "colmap_seapoint/orthomosaic/picture_sample.h"
+#include "colmap_seapoint/orthomosaic/sources/picture_sample.h"
 
 namespace colmap_seapoint {
 namespace {

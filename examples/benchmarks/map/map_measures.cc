@@ -6,8 +6,8 @@
 #include <memory>
 #include <optional>
 
-#include "colmap_seapoint/orthomosaic/map_view.h"
-#include "colmap_seapoint/orthomosaic/picture_sample.h"
+#include "colmap_seapoint/orthomosaic/ground/map_view.h"
+#include "colmap_seapoint/orthomosaic/sources/picture_sample.h"
 #include "examples/survey/scene/seabed.h"
 #include "examples/survey/visibility.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "colmap_seapoint/orthomosaic/map_pictures.h"
+#include "colmap_seapoint/orthomosaic/sources/map_pictures.h"
 #include "examples/benchmarks/map/memory_map.h"
 #include "examples/survey/survey.h"
 

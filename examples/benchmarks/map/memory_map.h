@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "colmap_seapoint/orthomosaic/map_frame.h"
-#include "colmap_seapoint/orthomosaic/map_grid.h"
-#include "colmap_seapoint/orthomosaic/map_tile.h"
+#include "colmap_seapoint/orthomosaic/ground/map_frame.h"
+#include "colmap_seapoint/orthomosaic/ground/map_grid.h"
+#include "colmap_seapoint/orthomosaic/ground/map_tile.h"
 
 namespace colmap_seapoint {
 
