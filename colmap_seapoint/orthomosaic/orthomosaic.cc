@@ -127,7 +127,7 @@ OrthomosaicSummary MakeOrthomosaic(const OrthomosaicOptions& options,
   const double ground = MedianHeight(sample);
   const CloudTiles cloud(inputs.cloud_path, summary.frame.map_from_cloud, summary.grid, ground,
                          inputs.temporary_folder);
-  summary.cell_size = cloud.CellSize();
+  summary.cell_size = cloud.UsualCellSize();
   summary.num_points_outside = cloud.NumOutside();
   const Relief relief(cloud, summary.grid, options.fill, options.num_threads,
                       inputs.temporary_folder);

@@ -39,7 +39,7 @@ struct OrthomosaicSummary {
   MapFrame frame;
   MapGrid grid;
   double gsd = 0;                    // of the survey, in the model's unit a pixel
-  int cell_size = 1;                 // pixels: the relief is as fine as the cloud, no finer
+  int cell_size = 1;                 // pixels, in most tiles: as fine as the cloud is, no finer
   uint64_t num_surface_pixels = 0;   // with a height
   uint64_t num_bridged_pixels = 0;   // of these: between measured ones, in cells without a point
   uint64_t num_filled_pixels = 0;    // of these: made up, by `fill`

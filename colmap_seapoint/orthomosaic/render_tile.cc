@@ -48,7 +48,8 @@ class TileCanvas {
       : scene_(scene),
         box_(scene.relief.Grid().Tile(tile_idx)),
         relief_(scene.relief.Read(tile_idx)),
-        sight_(relief_, box_, scene.relief.Blocks(), kShadowCells * scene.relief.CellSide()),
+        sight_(relief_, box_, scene.relief.Blocks(),
+               kShadowCells * scene.relief.CellSide(tile_idx)),
         pictures_(*pictures),
         sums_(static_cast<size_t>(box_.width) * static_cast<size_t>(box_.height)),
         source_(box_.width, box_.height, 1, kNoSource) {}

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <memory>
+#include <utility>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/cloud/cloud_ranges.h"
@@ -19,7 +21,8 @@ constexpr int kBlock = 16;           // pixels
 constexpr float kMinWeight = 0.01f;  // of a point without confidence: it counts where it is alone
 // Points on a lattice of this spacing, in cells, leave no two empty cells side by side.
 constexpr double kMaxSpacing = 1.3;
-constexpr double kDenserShare = 0.9;  // of the area that is as dense as the cells need
+constexpr size_t kMinInnerBlocks = 50;  // that tell how dense a tile is
+constexpr double kDenserShare = 0.9;    // of the area that is as dense as the cells need
 
 // nullptr for clouds of other programs, whose points must be read one by one.
 std::unique_ptr<CloudRanges> OpenOwnCloud(const std::filesystem::path& path) {
@@ -58,6 +61,17 @@ std::vector<Eigen::Vector3d> SampleRanges(const CloudRanges& cloud) {
   return sample;
 }
 
+// For blocks that hold so many points.
+int CellSizeFor(std::vector<uint32_t> counts) {
+  const auto at =
+      static_cast<std::ptrdiff_t>((1 - kDenserShare) * static_cast<double>(counts.size()));
+  std::nth_element(counts.begin(), counts.begin() + at, counts.end());
+  const double spacing = kBlock / std::sqrt(static_cast<double>(counts[static_cast<size_t>(at)]));
+  int cell_size = 1;
+  while (cell_size < kBlock && spacing > kMaxSpacing * cell_size) cell_size *= 2;
+  return cell_size;
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector3d> SampleCloud(const std::filesystem::path& path) {
@@ -92,7 +106,7 @@ CloudTiles::CloudTiles(const std::filesystem::path& path, const Rigid3d& map_fro
     Add(rotation * xyz + map_from_cloud.translation, confidence);
   });
   store_.Finish();
-  cell_size_ = FindCellSize();
+  FindCellSizes();
   block_counts_ = {};
 }
 
@@ -123,27 +137,44 @@ void CloudTiles::AddToTiles(const Eigen::Vector2d& pixel, float height, float we
   }
 }
 
-int CloudTiles::FindCellSize() const {
-  std::vector<uint32_t> inner;  // of blocks that are not at a border of the cloud
+// Numbers of points in the tile's blocks that are not at a border of the cloud.
+std::vector<uint32_t> CloudTiles::InnerCounts(const MapGrid::Box& box) const {
+  std::vector<uint32_t> inner;
   const auto count = [&](int x, int y) {
     return block_counts_[static_cast<size_t>(y) * static_cast<size_t>(num_blocks_x_) +
                          static_cast<size_t>(x)];
   };
-  for (int y = 1; y + 1 < num_blocks_y_; ++y) {
-    for (int x = 1; x + 1 < num_blocks_x_; ++x) {
+  const int end_x = std::min((box.x + box.width) / kBlock, num_blocks_x_ - 1);
+  const int end_y = std::min((box.y + box.height) / kBlock, num_blocks_y_ - 1);
+  for (int y = std::max(box.y / kBlock, 1); y < end_y; ++y) {
+    for (int x = std::max(box.x / kBlock, 1); x < end_x; ++x) {
       bool is_inner = true;
       for (int i = 0; i < 9; ++i) is_inner &= count(x + i % 3 - 1, y + i / 3 - 1) > 0;
       if (is_inner) inner.push_back(count(x, y));
     }
   }
-  if (inner.empty()) return 1;
-  const auto at =
-      static_cast<std::ptrdiff_t>((1 - kDenserShare) * static_cast<double>(inner.size()));
-  std::nth_element(inner.begin(), inner.begin() + at, inner.end());
-  const double spacing = kBlock / std::sqrt(static_cast<double>(inner[static_cast<size_t>(at)]));
-  int cell_size = 1;
-  while (cell_size < kBlock && spacing > kMaxSpacing * cell_size) cell_size *= 2;
-  return cell_size;
+  return inner;
+}
+
+void CloudTiles::FindCellSizes() {
+  std::map<int, uint64_t> num_points;  // that do with cells of such a size
+  cell_sizes_.assign(static_cast<size_t>(grid_.NumTiles()), 0);
+  for (int i = 0; i < grid_.NumTiles(); ++i) {
+    std::vector<uint32_t> counts = InnerCounts(grid_.Tile(i));
+    if (counts.size() < kMinInnerBlocks) continue;
+    cell_sizes_[static_cast<size_t>(i)] = CellSizeFor(std::move(counts));
+    num_points[cell_sizes_[static_cast<size_t>(i)]] += store_.NumRecords(i);
+  }
+  const auto usual =
+      std::max_element(num_points.begin(), num_points.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  if (usual != num_points.end()) {
+    usual_cell_size_ = usual->first;
+  } else {
+    std::vector<uint32_t> counts = InnerCounts({0, 0, grid_.width, grid_.height});
+    if (!counts.empty()) usual_cell_size_ = CellSizeFor(std::move(counts));
+  }
+  std::replace(cell_sizes_.begin(), cell_sizes_.end(), 0, usual_cell_size_);
 }
 
 }  // namespace colmap_seapoint

@@ -35,22 +35,26 @@ class CloudTiles {
   // In the order of the file. From any thread.
   std::vector<TilePoint> Read(int tile_idx) const { return store_.Read<TilePoint>(tile_idx); }
   double BaseHeight() const { return base_height_; }
-  // The side of a cell that holds a point almost everywhere where the cloud is, as dense as it is
-  // in all but a tenth of its area: 1, 2, 4, 8 or 16 pixels.
-  int CellSize() const { return cell_size_; }
+  // The side of a cell that holds a point almost everywhere where the tile's cloud is, as dense as
+  // it is in all but a tenth of its area: 1, 2, 4, 8 or 16 pixels. A tile with little of the cloud
+  // has the cells that most points of the map do with.
+  int CellSize(int tile_idx) const { return cell_sizes_[static_cast<size_t>(tile_idx)]; }
+  int UsualCellSize() const { return usual_cell_size_; }
   uint64_t NumOutside() const { return num_outside_; }  // of the map
 
  private:
   void Add(const Eigen::Vector3d& in_map, float confidence);
   void AddToTiles(const Eigen::Vector2d& pixel, float height, float weight);
-  int FindCellSize() const;
+  void FindCellSizes();
+  std::vector<uint32_t> InnerCounts(const MapGrid::Box& box) const;
 
   MapGrid grid_;
   double base_height_;
   TileStore store_;
   std::vector<uint32_t> block_counts_;
   int num_blocks_x_ = 0, num_blocks_y_ = 0;
-  int cell_size_ = 1;
+  std::vector<int> cell_sizes_;  // by tile
+  int usual_cell_size_ = 1;
   uint64_t num_outside_ = 0;
 };
 

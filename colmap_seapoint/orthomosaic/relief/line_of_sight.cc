@@ -8,8 +8,6 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
-constexpr int kStride = kBlockSize / 2;  // pixels that one looks ahead
-
 // The way from a place towards the camera: so many pixels, rising so much with every pixel.
 struct Rise {
   double dx = 0, dy = 0;  // of unit length together
@@ -23,16 +21,18 @@ Rise RiseTo(const MapPlace& place, const MapPlace& camera) {
   return {way.x() / length, way.y() / length, length, way.z() / length};
 }
 
-// From `begin` pixels of the way on, a block at a time.
+// From `begin` pixels of the way on, a block at a time, or a region where all around is lower.
 bool IsHiddenByBlocks(const BlockRelief& blocks, const MapPlace& place, const Rise& rise,
                       double begin, double tolerance) {
-  for (double s = begin; s < rise.length; s += kBlockSize) {
+  for (double s = begin; s < rise.length;) {
     const double height = place.z() + s * rise.slope;
     if (rise.slope >= 0 && height >= double{blocks.highest}) return false;
     const int x = static_cast<int>(std::floor((place.x() + s * rise.dx) / kBlockSize));
     const int y = static_cast<int>(std::floor((place.y() + s * rise.dy) / kBlockSize));
     if (!blocks.Contains(x, y)) return false;
     if (double{blocks.mean[blocks.At(x, y)]} > height + tolerance) return true;
+    const bool is_above = rise.slope >= 0 && height >= double{blocks.HighestAround(x, y)};
+    s += kBlockSize * (is_above ? kRegionBlocks : 1);
   }
   return false;
 }
@@ -55,22 +55,22 @@ LineOfSight::LineOfSight(const ReliefTile& tile, const MapGrid::Box& box, const 
       tolerance_(tolerance),
       block_tops_((heights_.width + kBlockSize - 1) / kBlockSize,
                   (heights_.height + kBlockSize - 1) / kBlockSize, 1, kNothing) {
+  FloatImage tops = block_tops_;
   for (int y = 0; y < heights_.height; ++y) {
     for (int x = 0; x < heights_.width; ++x) {
-      float& top = block_tops_.At(x / kBlockSize, y / kBlockSize);
+      float& top = tops.At(x / kBlockSize, y / kBlockSize);
       if (heights_.At(x, y) > top) top = heights_.At(x, y);
     }
   }
-}
-
-// Whether a ray at this height is above all that lies on its next kStride pixels.
-bool LineOfSight::IsAboveBlocks(double x, double y, double dx, double dy, double height) const {
-  for (const double ahead : {0.0, double{kStride}}) {
-    const int bx = static_cast<int>(std::floor((x + ahead * dx) / kBlockSize));
-    const int by = static_cast<int>(std::floor((y + ahead * dy) / kBlockSize));
-    if (!block_tops_.Contains(bx, by) || double{block_tops_.At(bx, by)} > height) return false;
+  for (int y = 0; y < tops.height; ++y) {
+    for (int x = 0; x < tops.width; ++x) {
+      for (int i = 0; i < 9; ++i) {
+        const int u = x + i % 3 - 1, v = y + i / 3 - 1;
+        if (tops.Contains(u, v))
+          block_tops_.At(x, y) = std::max(block_tops_.At(x, y), tops.At(u, v));
+      }
+    }
   }
-  return true;
 }
 
 bool LineOfSight::IsHidden(const MapPlace& place, const MapPlace& camera) const {
@@ -86,10 +86,9 @@ bool LineOfSight::IsHidden(const MapPlace& place, const MapPlace& camera) const 
     const int y = static_cast<int>(std::floor(first_y + s * rise.dy));
     if (!heights_.Contains(x, y)) break;
     if (double{heights_.At(x, y)} > height) return true;
-    s += rise.slope >= 0 && IsAboveBlocks(first_x + s * rise.dx, first_y + s * rise.dy, rise.dx,
-                                          rise.dy, height)
-             ? kStride
-             : 1;
+    // A ray above all blocks around cannot meet any of them within a block's length.
+    const bool is_above = double{block_tops_.At(x / kBlockSize, y / kBlockSize)} <= height;
+    s += is_above && rise.slope >= 0 ? kBlockSize : 1;
   }
   return IsHiddenByBlocks(blocks_, place, rise, std::max(s, 1.0), tolerance_);
 }

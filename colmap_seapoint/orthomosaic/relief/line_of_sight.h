@@ -28,13 +28,12 @@ class LineOfSight {
   bool IsHidden(const MapPlace& place, const MapPlace& camera) const;
 
  private:
-  bool IsAboveBlocks(double x, double y, double dx, double dy, double height) const;
-
   const FloatImage& heights_;
   const MapGrid::Box box_;
   const BlockRelief& blocks_;
   double tolerance_;
-  FloatImage block_tops_;  // of the tile with its margin: the highest place of every block
+  // Of the tile with its margin: the highest place of every block and of the eight around it.
+  FloatImage block_tops_;
 };
 
 }  // namespace colmap_seapoint

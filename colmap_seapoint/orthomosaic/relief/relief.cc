@@ -16,26 +16,47 @@ int64_t TilesAtOnce(int num_threads) { return std::min(EffectiveNumThreads(num_t
 
 }  // namespace
 
+void BlockRelief::FindTops() {
+  const int nx = static_cast<int>(RegionsX()), ny = (height + kRegionBlocks - 1) / kRegionBlocks;
+  region_tops.assign(RegionsX() * static_cast<size_t>(ny), -std::numeric_limits<float>::infinity());
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      if (std::isnan(mean[At(x, y)])) continue;
+      for (int i = 0; i < 9; ++i) {
+        const int u = x / kRegionBlocks + i % 3 - 1, v = y / kRegionBlocks + i / 3 - 1;
+        if (u < 0 || v < 0 || u >= nx || v >= ny) continue;
+        float& top = region_tops[static_cast<size_t>(v) * RegionsX() + static_cast<size_t>(u)];
+        top = std::max(top, mean[At(x, y)]);
+      }
+    }
+  }
+}
+
+double Relief::CellSide(int tile_idx) const {
+  return cell_sizes_[static_cast<size_t>(tile_idx)] * grid_.pixel_size;
+}
+
 Relief::Relief(const CloudTiles& cloud, const MapGrid& grid, bool fill, int num_threads,
                const std::filesystem::path& folder)
-    : grid_(grid),
-      store_(folder, grid.NumTiles(), 1),
-      cell_side_(cloud.CellSize() * grid.pixel_size) {
+    : grid_(grid), store_(folder, grid.NumTiles(), 1) {
   blocks_.width = (grid.width + kBlockSize - 1) / kBlockSize;
   blocks_.height = (grid.height + kBlockSize - 1) / kBlockSize;
   blocks_.mean.assign(static_cast<size_t>(blocks_.width) * static_cast<size_t>(blocks_.height),
                       kNoHeight);
   blocks_.lowest = std::numeric_limits<float>::infinity();
   blocks_.highest = -blocks_.lowest;
-  const ReliefOptions options = {cloud.CellSize(), grid.pixel_size, cloud.BaseHeight(), fill};
+  for (int i = 0; i < grid.NumTiles(); ++i) cell_sizes_.push_back(cloud.CellSize(i));
   OrderedPipeline<ReliefTile>(
       num_threads, grid.NumTiles(), TilesAtOnce(num_threads),
       [&](int64_t i) {
         const int tile = static_cast<int>(i);
+        const ReliefOptions options = {cloud.CellSize(tile), grid.pixel_size, cloud.BaseHeight(),
+                                       fill};
         return MakeReliefTile(options, cloud.Read(tile), grid.Tile(tile));
       },
       [&](int64_t i, ReliefTile&& tile) { Keep(static_cast<int>(i), tile); });
   store_.Finish();
+  blocks_.FindTops();
   if (!(blocks_.lowest <= blocks_.highest)) {
     throw Error("the map", "the points of the cloud lie too far apart to make a surface",
                 "give a dense cloud, or a larger pixel size");

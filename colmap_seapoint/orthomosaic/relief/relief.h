@@ -14,11 +14,25 @@ namespace colmap_seapoint {
 
 inline constexpr int kBlockSize = 16;  // pixels; tiles are whole blocks
 
+inline constexpr int kRegionBlocks = 8;  // along each side of a region
+
 // Squares of kBlockSize pixels: pictures are chosen by them.
 struct BlockRelief {
   int width = 0, height = 0;      // blocks
   std::vector<float> mean;        // height of the surface; kNoHeight where there is none
   float lowest = 0, highest = 0;  // over all blocks' surfaces
+  // Of every region and the eight around it the highest mean; FindTops() makes it of `mean`.
+  std::vector<float> region_tops;
+
+  void FindTops();
+  // No block's mean within kRegionBlocks blocks is higher.
+  float HighestAround(int x, int y) const {
+    return region_tops[static_cast<size_t>(y / kRegionBlocks) * RegionsX() +
+                       static_cast<size_t>(x / kRegionBlocks)];
+  }
+  size_t RegionsX() const {
+    return static_cast<size_t>((width + kRegionBlocks - 1) / kRegionBlocks);
+  }
 
   size_t At(int x, int y) const {
     return static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
@@ -38,8 +52,8 @@ class Relief {
   bool HasSurface(int tile_idx) const { return store_.NumRecords(tile_idx) > 0; }
   const BlockRelief& Blocks() const { return blocks_; }
   const MapGrid& Grid() const { return grid_; }
-  // How far a height may be off, beside what noise does: a cell's side, in the map's unit.
-  double CellSide() const { return cell_side_; }
+  // A cell's side, in the map's unit: the relief is no finer.
+  double CellSide(int tile_idx) const;
 
  private:
   void Keep(int tile_idx, const ReliefTile& tile);
@@ -48,7 +62,7 @@ class Relief {
   MapGrid grid_;
   TileStore store_;
   BlockRelief blocks_;
-  double cell_side_ = 0;
+  std::vector<int> cell_sizes_;  // by tile, pixels
 };
 
 }  // namespace colmap_seapoint

@@ -57,7 +57,7 @@ class CellGrid {
   size_t At(int x, int y) const {
     return static_cast<size_t>(y) * static_cast<size_t>(nx_) + static_cast<size_t>(x);
   }
-  void AddLayers(std::vector<TilePoint>* cell);
+  void AddLayers(TilePoint* begin, TilePoint* end);
   void BridgeBetween(int x, int y, size_t k, int far);
   int Support(int x, int y, float height) const;
 
@@ -74,54 +74,57 @@ class CellGrid {
 // Points become layers, cell by cell: positions from the cell's centre, all in cells.
 void CellGrid::AddPoints(const std::vector<TilePoint>& points) {
   const size_t num_cells = static_cast<size_t>(nx_) * static_cast<size_t>(ny_);
-  std::vector<uint32_t> ends(num_cells + 1, 0), cells(points.size());
-  for (size_t i = 0; i < points.size(); ++i) {
-    const int x = static_cast<int>((points[i].column + kTileHalo) / static_cast<float>(size_));
-    const int y = static_cast<int>((points[i].row + kTileHalo) / static_cast<float>(size_));
-    cells[i] = static_cast<uint32_t>(At(std::clamp(x, 0, nx_ - 1), std::clamp(y, 0, ny_ - 1)));
-    ++ends[cells[i] + 1];
-  }
+  const float per_pixel = 1 / static_cast<float>(size_), per_unit = 1 / unit_;
+  const auto cell_of = [&](const TilePoint& point) {
+    const int x = static_cast<int>((point.column + kTileHalo) * per_pixel);
+    const int y = static_cast<int>((point.row + kTileHalo) * per_pixel);
+    return At(std::clamp(x, 0, nx_ - 1), std::clamp(y, 0, ny_ - 1));
+  };
+  std::vector<uint32_t> ends(num_cells + 1, 0);
+  for (const TilePoint& point : points) ++ends[cell_of(point) + 1];
   for (size_t i = 1; i <= num_cells; ++i) ends[i] += ends[i - 1];
-  std::vector<uint32_t> order(points.size());
-  for (size_t i = 0; i < points.size(); ++i) order[ends[cells[i]]++] = static_cast<uint32_t>(i);
+  std::vector<TilePoint> sorted(points.size());
+  for (const TilePoint& point : points) {
+    const size_t cell = cell_of(point);
+    const float x = static_cast<float>(cell % static_cast<size_t>(nx_)) + 0.5f;
+    const float y = static_cast<float>(cell / static_cast<size_t>(nx_)) + 0.5f;
+    sorted[ends[cell]++] = {(point.column + kTileHalo) * per_pixel - x,
+                            (point.row + kTileHalo) * per_pixel - y, point.height * per_unit,
+                            point.weight};
+  }
   first_layer_.assign(1, 0);
   first_layer_.reserve(num_cells + 1);
   layers_.reserve(points.size());
-  std::vector<TilePoint> cell;
   for (size_t i = 0, begin = 0; i < num_cells; begin = ends[i++]) {
-    cell.clear();
-    const auto x = static_cast<float>(i % static_cast<size_t>(nx_)) + 0.5f;
-    const auto y = static_cast<float>(i / static_cast<size_t>(nx_)) + 0.5f;
-    for (size_t k = begin; k < ends[i]; ++k) {
-      const TilePoint& point = points[order[k]];
-      cell.push_back({(point.column + kTileHalo) / static_cast<float>(size_) - x,
-                      (point.row + kTileHalo) / static_cast<float>(size_) - y, point.height / unit_,
-                      point.weight});
-    }
-    AddLayers(&cell);
+    AddLayers(sorted.data() + begin, sorted.data() + ends[i]);
     first_layer_.push_back(static_cast<uint32_t>(layers_.size()));
   }
 }
 
-void CellGrid::AddLayers(std::vector<TilePoint>* cell) {
-  std::stable_sort(cell->begin(), cell->end(),
-                   [](const TilePoint& a, const TilePoint& b) { return a.height > b.height; });
+// Of the points of one cell, the highest first, of equal ones the first of the file.
+void CellGrid::AddLayers(TilePoint* begin, TilePoint* end) {
+  for (TilePoint* at = begin; at != end; ++at) {  // few: sorted by insertion
+    std::rotate(std::upper_bound(
+                    begin, at, *at,
+                    [](const TilePoint& a, const TilePoint& b) { return a.height > b.height; }),
+                at, at + 1);
+  }
   float top = 0, last = 0;
   int num_layers = 0;
-  for (const TilePoint& point : *cell) {
-    if (num_layers == 0 || last - point.height > kLayerGap) {
+  for (const TilePoint* point = begin; point != end; ++point) {
+    if (num_layers == 0 || last - point->height > kLayerGap) {
       if (num_layers++ == kMaxLayers) return;
       layers_.push_back({});
-      top = point.height;
+      top = point->height;
     }
-    last = point.height;
-    if (top - point.height > kTopDepth) continue;
+    last = point->height;
+    if (top - point->height > kTopDepth) continue;
     Layer& layer = layers_.back();
-    layer.weight += point.weight;
-    const float share = point.weight / layer.weight;
-    layer.x += share * (point.column - layer.x);
-    layer.y += share * (point.row - layer.y);
-    layer.height += share * (point.height - layer.height);
+    layer.weight += point->weight;
+    const float share = point->weight / layer.weight;
+    layer.x += share * (point->column - layer.x);
+    layer.y += share * (point->row - layer.y);
+    layer.height += share * (point->height - layer.height);
   }
 }
 

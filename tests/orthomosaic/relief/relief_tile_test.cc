@@ -213,6 +213,7 @@ TEST(LineOfSight, AWallCastsItsShadow) {
   blocks.mean.assign(200 * 200, kNoHeight);
   blocks.lowest = 0;
   blocks.highest = 10;
+  blocks.FindTops();
   const LineOfSight sight(tile, kBox, blocks, 1);
   const double row = kBox.y + 40.5;
   for (int x = 2; x < kSide - 2; ++x) {
@@ -245,6 +246,7 @@ TEST(LineOfSight, BlocksBeyondTheTileHide) {
   blocks.highest = 100;
   const int x = (kBox.x + kSide) / kBlockSize + 4, y = kBox.y / kBlockSize + 2;
   blocks.mean[blocks.At(x, y)] = 100;
+  blocks.FindTops();
   const ReliefTile tile = Make(PointsOn([](double, double) { return 0.0; }, 0.8));
   const LineOfSight sight(tile, kBox, blocks, 1);
   const MapPlace place(kBox.x + 90.5, (y + 0.5) * kBlockSize, 0);
