@@ -133,6 +133,17 @@ std::optional<double> BrightnessIn(const MapView& view, const Picture& picture,
   return 0.299 * double{color[0]} + 0.587 * double{color[1]} + 0.114 * double{color[2]};
 }
 
+// Whether two pictures truly see the surface at a pixel or one beside it: on a steep face they may
+// see what lies a pixel farther only.
+bool IsSeenNear(const SurveyTruth& truth, const SurfaceVisibility& visibility, const MemoryMap& map,
+                int x, int y) {
+  for (const int i : {4, 0, 1, 2, 3, 5, 6, 7, 8}) {
+    const auto hit = TrueSurface(truth, map, x + 0.5 + i % 3 - 1, y + 0.5 + i / 3 - 1);
+    if (hit && visibility.Sightings(hit->xyz, hit->normal).size() >= 2) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 ReliefErrors MeasureRelief(const SurveyTruth& truth, const MemoryMap& map) {
@@ -169,9 +180,8 @@ MapCoverage MeasureCoverage(const SurveyTruth& truth, const std::vector<Eigen::V
   for (int y = 0; y < map.Grid().height; y += 16) {
     for (int x = 0; x < map.Grid().width; x += 16) {
       if (map.Whole().rgba.At(x, y, 3) == 0) continue;
-      const auto hit = TrueSurface(truth, map, x + 0.5, y + 0.5);
       ++num_pixels;
-      num_unseen += !hit || visibility.Sightings(hit->xyz, hit->normal).size() < 2;
+      num_unseen += !IsSeenNear(truth, visibility, map, x, y);
     }
   }
   coverage.colored_share = num_colored / std::max(1.0, num_points);

@@ -19,7 +19,7 @@ ReliefErrors MeasureRelief(const SurveyTruth& truth, const MemoryMap& map);
 
 struct MapCoverage {
   double colored_share = 0;  // of the pixels that hold a point of the cloud on the upper surface
-  double unseen_share = 0;   // of the coloured pixels: no two pictures truly see the place
+  double unseen_share = 0;   // of the coloured pixels: no two pictures truly see a place within one
 };
 
 MapCoverage MeasureCoverage(const SurveyTruth& truth, const std::vector<Eigen::Vector3f>& points,
