@@ -24,7 +24,7 @@ struct OrthomosaicOptions {
   bool fill = false;      // also what lies between measured cells up to 48 pixels apart; marked
   bool balance = true;    // one brightness and colour for all pictures
   int num_threads = -1;   // -1 = all; never changes a result
-  size_t picture_bytes = size_t{400} << 20;  // of decoded pictures that are kept
+  size_t picture_bytes = size_t{300} << 20;  // of decoded pictures that are kept
 };
 
 struct OrthomosaicInputs {
