@@ -20,6 +20,7 @@ namespace {
 
 constexpr size_t kGsdPoints = 1000;
 constexpr int kMaxReduction = 8;
+constexpr int kMaxTilesAtOnce = 6;  // about 50 MB each
 
 std::vector<Eigen::Vector3d> InMap(const MapFrame& frame, std::vector<Eigen::Vector3d> points) {
   for (Eigen::Vector3d& point : points) point = frame.map_from_cloud * point;
@@ -103,7 +104,8 @@ void RenderTiles(const MapScene& scene, int num_threads, MapPictures* pictures,
               tiles.end());
   Progress progress("Tiles of the map", static_cast<int64_t>(tiles.size()));
   OrderedPipeline<MapTile>(
-      num_threads, static_cast<int64_t>(tiles.size()), EffectiveNumThreads(num_threads),
+      num_threads, static_cast<int64_t>(tiles.size()),
+      std::min(EffectiveNumThreads(num_threads), kMaxTilesAtOnce),
       [&](int64_t i) { return RenderTile(scene, tiles[static_cast<size_t>(i)], pictures); },
       [&](int64_t i, MapTile&& tile) {
         writer->Take(std::move(tile));

@@ -52,9 +52,11 @@ struct OrthomosaicSummary {
 };
 
 // Finds the plane and the grid, makes the relief, chooses a picture for every part of it, and hands
-// over tile by tile. Same bytes for any number of threads. Memory: pictures in the cache and one a
-// thread, 50 MB a thread, some 80 bytes for every 16 x 16 pixels. Throws Error for a cloud without
-// points or a surface, a model without pictures, a cloud that none of them sees, a map that would
+// over tile by tile. Same bytes for any number of threads. Each picture is read once to look at,
+// and about once more to draw, or once in all where the cache holds them; `read` returns an empty
+// picture for one that cannot be used. Memory: pictures in the cache and one a thread, 110 MB a
+// thread (of six at most), some 80 bytes for every 16 x 16 pixels with a surface. Throws Error for
+// a cloud without points or a surface, a cloud that no picture of the model sees, a map that would
 // be too large, and no space for temporary files.
 OrthomosaicSummary MakeOrthomosaic(const OrthomosaicOptions& options,
                                    const OrthomosaicInputs& inputs, MapTileSink* sink);

@@ -12,7 +12,8 @@
 namespace colmap_seapoint {
 namespace {
 
-int64_t TilesAtOnce(int num_threads) { return std::min(EffectiveNumThreads(num_threads), 8); }
+// About 110 MB each.
+int64_t TilesAtOnce(int num_threads) { return std::min(EffectiveNumThreads(num_threads), 6); }
 
 }  // namespace
 
