@@ -38,6 +38,10 @@ colmap_seapoint/markers         colmap_seapoint/base
 colmap_seapoint/georeference    colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/navigation colmap_seapoint/markers
 colmap_seapoint/navigation      colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/navigation colmap_seapoint/georeference colmap_seapoint/pictures
 colmap_seapoint/compare         colmap_seapoint/base colmap_seapoint/io/cloud
+colmap_seapoint/orthomosaic/ground colmap_seapoint/base colmap_seapoint/io/files
+colmap_seapoint/orthomosaic/relief colmap_seapoint/base colmap_seapoint/io/cloud colmap_seapoint/orthomosaic/ground
+colmap_seapoint/orthomosaic/sources colmap_seapoint/base colmap_seapoint/orthomosaic/ground colmap_seapoint/orthomosaic/relief
+colmap_seapoint/orthomosaic     colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/orthomosaic/*
 colmap_seapoint/tracks          colmap_seapoint/base colmap_seapoint/io/colmap
 colmap_seapoint/adjustment/equations colmap_seapoint/base
 colmap_seapoint/adjustment      colmap_seapoint/base colmap_seapoint/adjustment/equations

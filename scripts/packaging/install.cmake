@@ -46,6 +46,7 @@ set(exported_targets
   seapoint_densify_kernels seapoint_densify_match seapoint_densify_overlap seapoint_densify_cloud
   seapoint_densify_sequence seapoint_densify_maps seapoint_densify
   seapoint_estimate seapoint_markers seapoint_georeference seapoint_navigation seapoint_compare
+  seapoint_map_ground seapoint_map_relief seapoint_map_sources seapoint_orthomosaic
   seapoint_tracks seapoint_adjustment seapoint_lens seapoint_reposing seapoint_remeasuring
   seapoint_mapping seapoint_cameras seapoint_pictures seapoint_frames seapoint_joining seapoint_pairing
   seapoint_workspace seapoint_intake seapoint_report seapoint_pipeline)

@@ -1,0 +1,157 @@
+#include "colmap_seapoint/orthomosaic/orthomosaic.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/median.h"
+#include "colmap_seapoint/base/parallel.h"
+#include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/orthomosaic/relief/cloud_tiles.h"
+#include "colmap_seapoint/orthomosaic/relief/relief.h"
+#include "colmap_seapoint/orthomosaic/render_tile.h"
+#include "colmap_seapoint/orthomosaic/sources/block_colors.h"
+#include "colmap_seapoint/orthomosaic/sources/exposure.h"
+#include "colmap_seapoint/orthomosaic/sources/seams.h"
+
+namespace colmap_seapoint {
+namespace {
+
+constexpr size_t kGsdPoints = 1000;
+constexpr int kMaxReduction = 8;
+constexpr int kMaxTilesAtOnce = 6;  // about 50 MB each
+
+std::vector<Eigen::Vector3d> InMap(const MapFrame& frame, std::vector<Eigen::Vector3d> points) {
+  for (Eigen::Vector3d& point : points) point = frame.map_from_cloud * point;
+  return points;
+}
+
+double FindGsd(const std::vector<MapView>& views, const std::vector<Eigen::Vector3d>& sample,
+               const std::string& cloud_path) {
+  std::vector<Eigen::Vector3d> points;
+  for (size_t i = 0; i < sample.size(); i += sample.size() / kGsdPoints + 1) {
+    points.push_back(sample[i]);
+  }
+  const std::optional<double> gsd = SurveyGsd(views, points);
+  if (!gsd) {
+    throw Error(cloud_path,
+                "lies where no picture of the model looks: they are of different frames",
+                "give the model that this cloud was made from");
+  }
+  return *gsd;
+}
+
+double MedianHeight(const std::vector<Eigen::Vector3d>& sample) {
+  std::vector<double> heights;
+  for (const Eigen::Vector3d& point : sample) heights.push_back(point.z());
+  return UpperMedian(std::move(heights));
+}
+
+// How often pictures are halved so that a pixel of theirs is not much smaller than one of the map.
+std::vector<int> Reductions(const std::vector<MapView>& views, double ground, double pixel_size) {
+  std::vector<int> reductions;
+  for (const MapView& view : views) {
+    const Eigen::Vector3d below(view.Center().x(), view.Center().y(), ground);
+    const double gsd = (view.Center() - below).norm() / view.GetCamera().MeanFocal();
+    const double halvings = std::floor(std::log2(pixel_size / gsd) + 0.25);
+    reductions.push_back(std::isfinite(halvings)
+                             ? static_cast<int>(std::clamp(halvings, 0.0, double{kMaxReduction}))
+                             : 0);
+  }
+  return reductions;
+}
+
+// The order of tiles and what is counted of them; the sink sees them in that order.
+class TileWriter {
+ public:
+  TileWriter(size_t num_pictures, MapTileSink* sink, OrthomosaicSummary* summary)
+      : sink_(*sink), summary_(*summary), is_used_(num_pictures, 0) {}
+
+  void Take(MapTile&& tile) {
+    for (const uint8_t flags : tile.surface.data) {
+      summary_.num_surface_pixels += flags != 0;
+      summary_.num_bridged_pixels += (flags & kBridged) != 0;
+      summary_.num_filled_pixels += (flags & kFilled) != 0;
+      summary_.num_overhang_pixels += (flags & kOverhang) != 0;
+      summary_.num_colored_pixels += flags != 0 && (flags & kUncolored) == 0;
+    }
+    for (const int32_t source : tile.source.data) {
+      if (source != kNoSource) is_used_[static_cast<size_t>(source)] = 1;
+    }
+    sink_.Take(std::move(tile));
+  }
+
+  std::vector<size_t> PicturesUsed() const {
+    std::vector<size_t> used;
+    for (size_t i = 0; i < is_used_.size(); ++i) {
+      if (is_used_[i]) used.push_back(i);
+    }
+    return used;
+  }
+
+ private:
+  MapTileSink& sink_;
+  OrthomosaicSummary& summary_;
+  std::vector<uint8_t> is_used_;
+};
+
+void RenderTiles(const MapScene& scene, int num_threads, MapPictures* pictures,
+                 TileWriter* writer) {
+  std::vector<int> tiles = TilesAlongCurve(scene.relief.Grid());
+  tiles.erase(std::remove_if(tiles.begin(), tiles.end(),
+                             [&](int tile) { return !scene.relief.HasSurface(tile); }),
+              tiles.end());
+  Progress progress("Tiles of the map", static_cast<int64_t>(tiles.size()));
+  OrderedPipeline<MapTile>(
+      num_threads, static_cast<int64_t>(tiles.size()),
+      std::min(EffectiveNumThreads(num_threads), kMaxTilesAtOnce),
+      [&](int64_t i) { return RenderTile(scene, tiles[static_cast<size_t>(i)], pictures); },
+      [&](int64_t i, MapTile&& tile) {
+        writer->Take(std::move(tile));
+        progress.Update(i + 1);
+      });
+  progress.Finish();
+}
+
+}  // namespace
+
+OrthomosaicSummary MakeOrthomosaic(const OrthomosaicOptions& options,
+                                   const OrthomosaicInputs& inputs, MapTileSink* sink) {
+  OrthomosaicSummary summary;
+  const std::vector<Eigen::Vector3d> cloud_sample = SampleCloud(inputs.cloud_path);
+  summary.frame = FindMapFrame(options.plane, inputs.model, cloud_sample, inputs.units);
+  const std::vector<Eigen::Vector3d> sample = InMap(summary.frame, cloud_sample);
+  const std::vector<MapView> views = MakeMapViews(inputs.model, summary.frame.map_from_cloud);
+  summary.gsd = FindGsd(views, sample, inputs.cloud_path.string());
+  summary.grid = MakeMapGrid(sample, options.pixel_size > 0 ? options.pixel_size : summary.gsd);
+
+  const double ground = MedianHeight(sample);
+  const CloudTiles cloud(inputs.cloud_path, summary.frame.map_from_cloud, summary.grid, ground,
+                         inputs.temporary_folder);
+  summary.cell_size = cloud.UsualCellSize();
+  summary.num_points_outside = cloud.NumOutside();
+  const Relief relief(cloud, summary.grid, options.fill, options.num_threads,
+                      inputs.temporary_folder);
+
+  MapPictures pictures(inputs.read, Reductions(views, ground, summary.grid.pixel_size),
+                       options.picture_bytes);
+  SourceBlocks sources = FindSources(relief, views, options.num_threads);
+  const std::vector<PictureUse> use =
+      LookAtSources(relief, views, options.num_threads, &pictures, &sources);
+  const Exposure exposure =
+      options.balance ? BalanceExposure(relief, views, sources) : EqualExposure(views.size());
+  ChooseSources(relief.Blocks(), exposure, options.num_threads, &sources);
+
+  sink->Begin(summary.frame, summary.grid);
+  TileWriter writer(views.size(), sink, &summary);
+  RenderTiles({relief, views, sources, exposure}, options.num_threads, &pictures, &writer);
+  summary.pictures_used = writer.PicturesUsed();
+  for (size_t i = 0; i < use.size(); ++i) {
+    if (use[i] == PictureUse::kUnreadable) summary.pictures_unread.push_back(i);
+  }
+  summary.num_picture_reads = pictures.NumReads();
+  return summary;
+}
+
+}  // namespace colmap_seapoint

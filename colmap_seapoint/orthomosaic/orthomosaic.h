@@ -1,0 +1,64 @@
+// The map of a survey: relief and true orthomosaic on one grid (ours).
+//
+// Nothing is made up: where the cloud has no surface the map has none, unless `fill` asks for it,
+// and every pixel says which picture its colour is from.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "colmap_seapoint/base/sparse_model.h"
+#include "colmap_seapoint/io/files/model_units.h"
+#include "colmap_seapoint/orthomosaic/ground/map_frame.h"
+#include "colmap_seapoint/orthomosaic/ground/map_grid.h"
+#include "colmap_seapoint/orthomosaic/ground/map_tile.h"
+#include "colmap_seapoint/orthomosaic/sources/map_pictures.h"
+
+namespace colmap_seapoint {
+
+struct OrthomosaicOptions {
+  MapFrameOptions plane;
+  double pixel_size = 0;  // of the model's unit; 0 = the survey's ground sampling distance
+  bool fill = false;      // also what lies between measured cells up to 48 pixels apart; marked
+  bool balance = true;    // one brightness and colour for all pictures
+  int num_threads = -1;   // -1 = all; never changes a result
+  size_t picture_bytes = size_t{300} << 20;  // of decoded pictures that are kept
+};
+
+struct OrthomosaicInputs {
+  const SparseModel& model;
+  std::filesystem::path cloud_path;        // PLY, in the model's frame
+  std::optional<ModelUnits> units;         // of the model
+  MapPictureReader read;                   // pictures of the model
+  std::filesystem::path temporary_folder;  // some 16 bytes a point and 5 a pixel
+};
+
+struct OrthomosaicSummary {
+  MapFrame frame;
+  MapGrid grid;
+  double gsd = 0;                    // of the survey, in the model's unit a pixel
+  int cell_size = 1;                 // pixels, in most tiles: as fine as the cloud is, no finer
+  uint64_t num_surface_pixels = 0;   // with a height
+  uint64_t num_bridged_pixels = 0;   // of these: between measured ones, in cells without a point
+  uint64_t num_filled_pixels = 0;    // of these: made up, by `fill`
+  uint64_t num_overhang_pixels = 0;  // of these: with another surface below
+  uint64_t num_colored_pixels = 0;   // of these: with a picture
+  uint64_t num_points_outside = 0;   // of the map: far from all others
+  size_t num_picture_reads = 0;
+  std::vector<size_t> pictures_used;    // positions in the model's images, ascending
+  std::vector<size_t> pictures_unread;  // those that could not be read, or are of another shape
+};
+
+// Finds the plane and the grid, makes the relief, chooses a picture for every part of it, and hands
+// over tile by tile. Same bytes for any number of threads. Each picture is read once to look at,
+// and about once more to draw, or once in all where the cache holds them; `read` returns an empty
+// picture for one that cannot be used. Memory: pictures in the cache and one a thread, 110 MB a
+// thread (of six at most), some 80 bytes for every 16 x 16 pixels with a surface. Throws Error for
+// a cloud without points or a surface, a cloud that no picture of the model sees, a map that would
+// be too large, and no space for temporary files.
+OrthomosaicSummary MakeOrthomosaic(const OrthomosaicOptions& options,
+                                   const OrthomosaicInputs& inputs, MapTileSink* sink);
+
+}  // namespace colmap_seapoint

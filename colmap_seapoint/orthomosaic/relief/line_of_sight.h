@@ -1,0 +1,39 @@
+// Whether the surface itself stands between a place of the map and a camera.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "colmap_seapoint/orthomosaic/ground/map_grid.h"
+#include "colmap_seapoint/orthomosaic/relief/relief.h"
+
+namespace colmap_seapoint {
+
+// A place of space over the map: column and row, pixels of the map, and height.
+using MapPlace = Eigen::Vector3d;
+
+// By blocks alone: what may be seen at all. The mean heights of blocks hide less than the surface
+// does. From the centre of block (x, y).
+bool IsBlockHidden(const BlockRelief& blocks, int x, int y, const MapPlace& camera,
+                   double pixel_size);
+
+// In one tile, pixel by pixel, and beyond it by blocks. What hides a place by less than `tolerance`
+// does not: noise casts no shadows.
+class LineOfSight {
+ public:
+  LineOfSight(const ReliefTile& tile, const MapGrid::Box& box, const BlockRelief& blocks,
+              double tolerance);
+
+  // `place`: on the surface, in the tile. About 60 ns.
+  bool IsHidden(const MapPlace& place, const MapPlace& camera) const;
+
+ private:
+  const FloatImage& heights_;
+  const MapGrid::Box box_;
+  const BlockRelief& blocks_;
+  double tolerance_;
+  // Of the tile with its margin: the highest place of every block and of the eight around it.
+  FloatImage block_tops_;
+};
+
+}  // namespace colmap_seapoint

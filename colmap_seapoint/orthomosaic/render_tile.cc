@@ -1,0 +1,253 @@
+#include "colmap_seapoint/orthomosaic/render_tile.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <tuple>
+#include <utility>
+
+#include "colmap_seapoint/orthomosaic/relief/line_of_sight.h"
+
+namespace colmap_seapoint {
+namespace {
+
+constexpr double kShadowCells = 1.5;  // what hides a place must be higher by, in cells
+
+// The square between the centres of four blocks: block (x, y) is its upper left one. `corners`: bit
+// k is set where corner k (left to right, top to bottom) has chosen this picture.
+struct Patch {
+  uint32_t picture;
+  int x, y;
+  uint8_t corners;
+
+  bool operator<(const Patch& other) const {
+    return std::tie(picture, y, x) < std::tie(other.picture, other.y, other.x);
+  }
+};
+
+// A pixel of the tile that waits for another picture.
+struct Gap {
+  uint32_t picture;
+  int x, y;
+
+  bool operator<(const Gap& other) const {
+    return std::tie(picture, y, x) < std::tie(other.picture, other.y, other.x);
+  }
+};
+
+struct Sum {  // of what pictures show of a pixel
+  Light light = {0, 0, 0};
+  float weight = 0;
+  float highest = 0;  // weight of any one of them
+};
+
+class TileCanvas {
+ public:
+  TileCanvas(const MapScene& scene, int tile_idx, MapPictures* pictures)
+      : scene_(scene),
+        box_(scene.relief.Grid().Tile(tile_idx)),
+        relief_(scene.relief.Read(tile_idx)),
+        sight_(relief_, box_, scene.relief.Blocks(),
+               kShadowCells * scene.relief.CellSide(tile_idx)),
+        pictures_(*pictures),
+        sums_(static_cast<size_t>(box_.width) * static_cast<size_t>(box_.height)),
+        source_(box_.width, box_.height, 1, kNoSource) {}
+
+  void DrawChosen();
+  void DrawOthers();
+  MapTile Finish();
+
+ private:
+  class Brush;
+  void AddPatch(int x, int y, std::vector<Patch>* patches) const;
+  void DrawPatch(const Patch& patch, const Brush& brush);
+  std::vector<Gap> FindGaps(int rank) const;
+  void AddColor(int x, int y, uint32_t picture, const Light& light, float weight);
+  size_t At(int x, int y) const {
+    return static_cast<size_t>(y) * static_cast<size_t>(box_.width) + static_cast<size_t>(x);
+  }
+
+  const MapScene& scene_;
+  const MapGrid::Box box_;
+  ReliefTile relief_;
+  LineOfSight sight_;
+  MapPictures& pictures_;
+  std::vector<Sum> sums_;
+  Image<int32_t> source_;
+};
+
+// One picture, to colour pixels of the tile with.
+class TileCanvas::Brush {
+ public:
+  Brush(const TileCanvas& canvas, uint32_t picture)
+      : canvas_(canvas),
+        view_(canvas.scene_.views[picture]),
+        picture_idx_(picture),
+        picture_(canvas.pictures_.Get(picture)),
+        scale_x_(static_cast<double>(picture_->luma.width) / view_.GetCamera().width),
+        scale_y_(static_cast<double>(picture_->luma.height) / view_.GetCamera().height) {
+    const MapGrid& grid = canvas.scene_.relief.Grid();
+    camera_ << grid.PixelOf(view_.Center().x(), view_.Center().y()), view_.Center().z();
+  }
+
+  // False where the picture does not show the pixel of the tile.
+  bool ColorOf(int x, int y, Light* light) const {
+    const float height = canvas_.relief_.heights.At(x + kReliefMargin, y + kReliefMargin);
+    const MapPlace place(canvas_.box_.x + x + 0.5, canvas_.box_.y + y + 0.5, double{height});
+    const Eigen::Vector2d on_map = canvas_.scene_.relief.Grid().PlaceOf(place.x(), place.y());
+    const auto pixel = view_.PixelOf({on_map.x(), on_map.y(), place.z()});
+    if (!pixel) return false;
+    const auto px = static_cast<float>(scale_x_ * pixel->x());
+    const auto py = static_cast<float>(scale_y_ * pixel->y());
+    if (IsMasked(*picture_, px, py) || canvas_.sight_.IsHidden(place, camera_)) return false;
+    *light = LightAt(*picture_, px, py);
+    const Light factor = canvas_.scene_.exposure.FactorAt(
+        picture_idx_, px / static_cast<float>(picture_->luma.width),
+        py / static_cast<float>(picture_->luma.height));
+    for (size_t c = 0; c < 3; ++c) (*light)[c] *= factor[c];
+    return true;
+  }
+
+ private:
+  const TileCanvas& canvas_;
+  const MapView& view_;
+  uint32_t picture_idx_;
+  std::shared_ptr<const Picture> picture_;
+  double scale_x_, scale_y_;
+  MapPlace camera_;
+};
+
+void TileCanvas::AddPatch(int x, int y, std::vector<Patch>* patches) const {
+  const BlockRelief& blocks = scene_.relief.Blocks();
+  std::array<uint32_t, 4> chosen;
+  for (int k = 0; k < 4; ++k) {
+    const int bx = x + k % 2, by = y + k / 2;
+    chosen[static_cast<size_t>(k)] =
+        blocks.Contains(bx, by) ? scene_.sources.PictureOf(blocks.At(bx, by)) : kNoPicture;
+  }
+  for (size_t k = 0; k < 4; ++k) {
+    const bool is_first = std::find(chosen.begin(), chosen.end(), chosen[k]) ==
+                          chosen.begin() + static_cast<std::ptrdiff_t>(k);
+    if (chosen[k] == kNoPicture || !is_first) continue;
+    uint8_t corners = 0;
+    for (size_t i = 0; i < 4; ++i) {
+      if (chosen[i] == chosen[k]) corners = static_cast<uint8_t>(corners | 1u << i);
+    }
+    patches->push_back({chosen[k], x, y, corners});
+  }
+}
+
+void TileCanvas::AddColor(int x, int y, uint32_t picture, const Light& light, float weight) {
+  Sum& sum = sums_[At(x, y)];
+  for (size_t c = 0; c < 3; ++c) sum.light[c] += weight * light[c];
+  sum.weight += weight;
+  if (weight <= sum.highest) return;
+  sum.highest = weight;
+  source_.At(x, y) = static_cast<int32_t>(picture);
+}
+
+// Weights fall off between the blocks' centres, fast about the middle.
+void TileCanvas::DrawPatch(const Patch& patch, const Brush& brush) {
+  constexpr float kStep = 1.0f / kBlockSize;
+  const int left = patch.x * kBlockSize + kBlockSize / 2 - box_.x;
+  const int top = patch.y * kBlockSize + kBlockSize / 2 - box_.y;
+  for (int y = std::max(top, 0); y < std::min(top + kBlockSize, box_.height); ++y) {
+    for (int x = std::max(left, 0); x < std::min(left + kBlockSize, box_.width); ++x) {
+      if (relief_.surface.At(x, y) == 0) continue;
+      const float fx = (static_cast<float>(x - left) + 0.5f) * kStep;
+      const float fy = (static_cast<float>(y - top) + 0.5f) * kStep;
+      const float corner[4] = {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
+      float weight = 0;
+      for (int k = 0; k < 4; ++k) weight += patch.corners >> k & 1 ? corner[k] : 0;
+      Light light;
+      if (!brush.ColorOf(x, y, &light)) continue;
+      AddColor(x, y, patch.picture, light, weight * weight * weight * weight);
+    }
+  }
+}
+
+void TileCanvas::DrawChosen() {
+  std::vector<Patch> patches;
+  const int first_x = box_.x / kBlockSize - 1, first_y = box_.y / kBlockSize - 1;
+  for (int y = first_y; y * kBlockSize < box_.y + box_.height; ++y) {
+    for (int x = first_x; x * kBlockSize < box_.x + box_.width; ++x) AddPatch(x, y, &patches);
+  }
+  std::sort(patches.begin(), patches.end());
+  for (size_t i = 0; i < patches.size();) {
+    const uint32_t picture = patches[i].picture;
+    const Brush brush(*this, picture);
+    for (; i < patches.size() && patches[i].picture == picture; ++i) DrawPatch(patches[i], brush);
+  }
+}
+
+// Pixels without a colour whose block has a source of that rank.
+std::vector<Gap> TileCanvas::FindGaps(int rank) const {
+  std::vector<Gap> gaps;
+  const BlockRelief& blocks = scene_.relief.Blocks();
+  for (int y = 0; y < box_.height; ++y) {
+    for (int x = 0; x < box_.width; ++x) {
+      if (relief_.surface.At(x, y) == 0 || sums_[At(x, y)].weight > 0) continue;
+      const size_t block = blocks.At((box_.x + x) / kBlockSize, (box_.y + y) / kBlockSize);
+      const int32_t at = scene_.sources.slot[block];
+      const uint32_t picture = at < 0 ? kNoPicture : scene_.sources.Of(at)[rank].picture;
+      if (picture != kNoPicture) gaps.push_back({picture, x, y});
+    }
+  }
+  return gaps;
+}
+
+void TileCanvas::DrawOthers() {
+  for (int rank = 0; rank < kMaxSources; ++rank) {
+    std::vector<Gap> gaps = FindGaps(rank);
+    std::sort(gaps.begin(), gaps.end());
+    for (size_t i = 0; i < gaps.size();) {
+      const uint32_t picture = gaps[i].picture;
+      const Brush brush(*this, picture);
+      for (; i < gaps.size() && gaps[i].picture == picture; ++i) {
+        Light light;
+        if (brush.ColorOf(gaps[i].x, gaps[i].y, &light)) {
+          AddColor(gaps[i].x, gaps[i].y, picture, light, 1);
+        }
+      }
+    }
+  }
+}
+
+MapTile TileCanvas::Finish() {
+  MapTile tile;
+  tile.x = box_.x;
+  tile.y = box_.y;
+  tile.relief = FloatImage(box_.width, box_.height, 1, kNoHeight);
+  tile.rgba = Image<uint8_t>(box_.width, box_.height, 4);
+  tile.surface = std::move(relief_.surface);
+  tile.source = std::move(source_);
+  for (int y = 0; y < box_.height; ++y) {
+    for (int x = 0; x < box_.width; ++x) {
+      uint8_t& flags = tile.surface.At(x, y);
+      if (flags == 0) continue;
+      tile.relief.At(x, y) = relief_.heights.At(x + kReliefMargin, y + kReliefMargin);
+      const Sum& sum = sums_[At(x, y)];
+      if (!(sum.weight > 0)) {
+        flags |= kUncolored;
+        continue;
+      }
+      for (size_t c = 0; c < 3; ++c) {
+        tile.rgba.At(x, y, static_cast<int>(c)) = ScreenOf(sum.light[c] / sum.weight);
+      }
+      tile.rgba.At(x, y, 3) = 255;
+    }
+  }
+  return tile;
+}
+
+}  // namespace
+
+MapTile RenderTile(const MapScene& scene, int tile_idx, MapPictures* pictures) {
+  TileCanvas canvas(scene, tile_idx, pictures);
+  canvas.DrawChosen();
+  canvas.DrawOthers();
+  return canvas.Finish();
+}
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,140 @@
+#include "colmap_seapoint/orthomosaic/sources/block_colors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "colmap_seapoint/base/parallel.h"
+#include "colmap_seapoint/orthomosaic/sources/picture_sample.h"
+
+namespace colmap_seapoint {
+namespace {
+
+constexpr int kSamples = 4;           // along each side of a block
+constexpr double kSharpWeight = 0.5;  // of a halving of the contrast, against one of the GSD
+constexpr float kMinBlur = 1.5f;      // times the sharpest: less is noise
+constexpr float kMaxBlur = 8;         // what is duller still is as bad
+
+// The contrast of a pixel with its neighbours, over its brightness.
+float ContrastAt(const GrayImage& luma, int x, int y) {
+  if (x < 1 || y < 1 || x + 1 >= luma.width || y + 1 >= luma.height) return 0;
+  const int here = luma.At(x, y);
+  const int across = std::abs(2 * here - luma.At(x - 1, y) - luma.At(x + 1, y));
+  const int along = std::abs(2 * here - luma.At(x, y - 1) - luma.At(x, y + 1));
+  return static_cast<float>(across + along) / static_cast<float>(here + 10);
+}
+
+class SourceViewer {
+ public:
+  SourceViewer(const Relief& relief, const MapView& view, const Picture& picture)
+      : relief_(relief),
+        view_(view),
+        picture_(picture),
+        scale_x_(static_cast<double>(picture.luma.width) / view.GetCamera().width),
+        scale_y_(static_cast<double>(picture.luma.height) / view.GetCamera().height) {}
+
+  // False where the picture shows too little of the block that may be used.
+  bool Look(int x, int y, Source* source) const {
+    float sum[3] = {0, 0, 0}, contrast = 0;
+    int count = 0;
+    for (int i = 0; i < kSamples * kSamples; ++i) {
+      const double step = static_cast<double>(kBlockSize) / kSamples;
+      const double dx = (i % kSamples + 0.5) * step - 0.5 * kBlockSize;
+      const double dy = (i / kSamples + 0.5) * step - 0.5 * kBlockSize;
+      const auto pixel = view_.PixelOf(PlaceInBlock(relief_, x, y, dx, dy));
+      if (!pixel) continue;
+      const auto px = static_cast<float>(scale_x_ * pixel->x());
+      const auto py = static_cast<float>(scale_y_ * pixel->y());
+      if (IsMasked(picture_, px, py)) continue;
+      const std::array<float, 3> color = ScreenColorAt(picture_, px, py);
+      for (size_t c = 0; c < 3; ++c) sum[c] += color[c];
+      contrast += ContrastAt(picture_.luma, static_cast<int>(px), static_cast<int>(py));
+      ++count;
+    }
+    if (2 * count < kSamples * kSamples) return false;
+    for (size_t c = 0; c < 3; ++c) {
+      source->rgb[c] = static_cast<uint8_t>(sum[c] / static_cast<float>(count) + 0.5f);
+    }
+    const float mean = contrast / static_cast<float>(count);
+    source->sharpness = static_cast<uint8_t>(std::clamp(200 * mean, 1.0f, 255.0f));
+    return true;
+  }
+
+ private:
+  const Relief& relief_;
+  const MapView& view_;
+  const Picture& picture_;
+  double scale_x_, scale_y_;
+};
+
+Source* FindPicture(uint32_t picture, Source* sources) {
+  for (int k = 0; k < kMaxSources; ++k) {
+    if (sources[k].picture == picture) return &sources[k];
+  }
+  return nullptr;
+}
+
+// Touches the sources of this picture alone.
+void LookAtPicture(const Relief& relief, const MapView& view, uint32_t picture_idx,
+                   const std::array<int, 4>& blocks, const Picture& picture,
+                   SourceBlocks* sources) {
+  const SourceViewer viewer(relief, view, picture);
+  for (int y = blocks[1]; y <= blocks[3]; ++y) {
+    for (int x = blocks[0]; x <= blocks[2]; ++x) {
+      const int32_t at = sources->slot[relief.Blocks().At(x, y)];
+      Source* source = at < 0 ? nullptr : FindPicture(picture_idx, sources->Of(at));
+      if (source && (picture.Empty() || !viewer.Look(x, y, source))) source->sharpness = 0;
+    }
+  }
+}
+
+// What was not looked at goes, what is dull becomes dearer.
+void SortSources(Source* sources) {
+  uint8_t sharpest = 0;
+  for (int k = 0; k < kMaxSources; ++k) {
+    if (sources[k].sharpness == 0) sources[k] = Source();
+    sharpest = std::max(sharpest, sources[k].sharpness);
+  }
+  for (int k = 0; k < kMaxSources; ++k) {
+    if (sources[k].picture == kNoPicture) continue;
+    const float blur = static_cast<float>(sharpest) / sources[k].sharpness;
+    sources[k].cost += static_cast<float>(kSharpWeight) *
+                       std::log2(std::clamp(blur, kMinBlur, kMaxBlur) / kMinBlur);
+  }
+  std::stable_sort(sources, sources + kMaxSources, [](const Source& a, const Source& b) {
+    if ((a.picture == kNoPicture) != (b.picture == kNoPicture)) return b.picture == kNoPicture;
+    return a.cost < b.cost;
+  });
+}
+
+bool IsUsable(const Camera& camera, const Picture& picture, int reduction) {
+  if (picture.Empty()) return false;
+  const int width = std::max(1, camera.width >> reduction);
+  const int height = std::max(1, camera.height >> reduction);
+  return AreScaledSizes(width, height, picture.luma.width, picture.luma.height);
+}
+
+}  // namespace
+
+std::vector<PictureUse> LookAtSources(const Relief& relief, const std::vector<MapView>& views,
+                                      int num_threads, MapPictures* pictures,
+                                      SourceBlocks* sources) {
+  std::vector<PictureUse> use(views.size(), PictureUse::kNotLookedAt);
+  const std::vector<std::array<int, 4>> blocks = FootprintBlocks(relief, views);
+  ParallelFor(num_threads, static_cast<int64_t>(views.size()), [&](int64_t index) {
+    const auto i = static_cast<size_t>(index);
+    if (blocks[i][0] > blocks[i][2] || blocks[i][1] > blocks[i][3]) return;
+    const auto picture_idx = static_cast<uint32_t>(i);
+    const std::shared_ptr<const Picture> picture = pictures->Get(picture_idx);
+    const bool is_usable =
+        IsUsable(views[i].GetCamera(), *picture, pictures->Reduction(picture_idx));
+    use[i] = is_usable ? PictureUse::kUsable : PictureUse::kUnreadable;
+    LookAtPicture(relief, views[i], picture_idx, blocks[i], is_usable ? *picture : Picture(),
+                  sources);
+  });
+  ParallelFor(num_threads, static_cast<int64_t>(sources->NumSlots()),
+              [&](int64_t slot) { SortSources(sources->Of(static_cast<int32_t>(slot))); });
+  return use;
+}
+
+}  // namespace colmap_seapoint

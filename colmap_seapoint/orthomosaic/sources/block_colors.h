@@ -1,0 +1,22 @@
+// What each picture shows of the blocks that it may colour.
+#pragma once
+
+#include <vector>
+
+#include "colmap_seapoint/orthomosaic/ground/map_view.h"
+#include "colmap_seapoint/orthomosaic/sources/map_pictures.h"
+#include "colmap_seapoint/orthomosaic/sources/source_blocks.h"
+
+namespace colmap_seapoint {
+
+enum class PictureUse : uint8_t { kNotLookedAt, kUsable, kUnreadable };
+
+// Fills in mean colour and sharpness of all sources, each picture read once; takes out sources that
+// are masked there, and all of a picture that cannot be read or has other proportions than its
+// camera. Then sharper pictures become cheaper, against the sharpest of a block, and the sources of
+// a block are sorted anew. About 2 microseconds a source.
+std::vector<PictureUse> LookAtSources(const Relief& relief, const std::vector<MapView>& views,
+                                      int num_threads, MapPictures* pictures,
+                                      SourceBlocks* sources);
+
+}  // namespace colmap_seapoint
