@@ -1,5 +1,6 @@
 #include "colmap_seapoint/cli/command.h"
 #include "colmap_seapoint/pipeline/compare.h"
+#include "colmap_seapoint/pipeline/completeness.h"
 #include "colmap_seapoint/pipeline/densify.h"
 #include "colmap_seapoint/pipeline/extract.h"
 #include "colmap_seapoint/pipeline/markers/marker_finder.h"
@@ -31,6 +32,9 @@ std::vector<Command> AllCommands() {
                   RunPartialDensifier),
       MakeCommand("cloud_comparer", "two clouds in one frame -> accuracy, completeness, density",
                   RunCloudComparer),
+      MakeCommand("completeness_reporter",
+                  "what a cloud covers, what is missing, why, and a route that closes it",
+                  RunCompletenessReporter),
       MakeCommand("render_cloud", "a cloud -> a picture of it, from above or as a camera saw it",
                   RunCloudRenderer),
       MakeCommand("automatic_reconstructor", "a folder of pictures -> dense clouds, all in one",
