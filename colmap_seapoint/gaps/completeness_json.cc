@@ -45,6 +45,8 @@ Json PictureJson(const PictureRecord& record, const std::string& name) {
         static_cast<double>(counts[c]) / static_cast<double>(record.causes.size());
   }
   return {{"name", name},
+          {"is_bad", record.is_bad},
+          {"sharpness", record.sharpness},
           {"covered", record.Share(CellState::kCovered)},
           {"not_covered", record.Share(CellState::kNotCovered)},
           {"unknown", record.Share(CellState::kUnknown)},

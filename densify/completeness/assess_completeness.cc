@@ -12,11 +12,12 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr size_t kNumNearest = 5;
-// The gaps that are listed: (10 wanted spacings)^2 and more, and a square of 8 fits into them.
+// The gaps that are listed: (10 wanted spacings)^2 and more, and a square of 8 spacings fits into
+// them.
 constexpr double kMinGapSpacings = 10;
 constexpr int kMinGapCells = 4;
 // Radius of the disc that closes the outline, in widths of a picture.
-constexpr double kOutlineRadius = 1.0;
+constexpr double kOutlineRadius = 0.5;
 
 double StepOf(const SparseModel& model, const CompletenessOptions& options) {
   std::vector<double> steps;

@@ -106,13 +106,14 @@ class TileJudge {
     TiledGrid<GroundCell>::Tile& tile = layer_->cells.ExistingTile(key);
     if (!is_top_ && CoveredShare(tile) < kDenseTile) return;
     const std::vector<int> candidates = CandidatesOf(key);
+    const bool has_bad = HasBad(candidates);
     for (int i = 0; i < kSide * kSide; ++i) {
       const int x = key.x * kSide + i % kSide, y = key.y * kSide + i / kSide;
       GroundCell& cell = tile[static_cast<size_t>(i)];
       if (!cell.is_covered) {
         JudgeCell(candidates, x, y, &cell);
-      } else if (x % kSampleCells == 0 && y % kSampleCells == 0) {
-        Note(SightsAt(candidates, x, y, cell), &cell);
+      } else if (has_bad || (x % kSampleCells == 0 && y % kSampleCells == 0)) {
+        JudgeCovered(SightsAt(candidates, x, y, cell), &cell);
       }
       RespectArea(x, y, &cell);
     }
@@ -129,6 +130,10 @@ class TileJudge {
     }
     return candidates;
   }
+  bool HasBad(const std::vector<int>& candidates) const {
+    return std::any_of(candidates.begin(), candidates.end(),
+                       [&](int i) { return (*context_.facts)[static_cast<size_t>(i)].is_bad; });
+  }
   std::vector<Sight> SightsAt(const std::vector<int>& candidates, int x, int y,
                               const GroundCell& cell) const {
     const double side = ground_.cell_side;
@@ -139,6 +144,13 @@ class TileJudge {
   static void Note(const std::vector<Sight>& sights, GroundCell* cell) {
     cell->num_views = static_cast<uint8_t>(std::min(255, NumGood(sights)));
     cell->parallax_deg = static_cast<uint8_t>(std::lround(ParallaxDeg(sights)));
+  }
+  // What other layers look at must not change while they do.
+  void JudgeCovered(const std::vector<Sight>& sights, GroundCell* cell) const {
+    Note(sights, cell);
+    if (!is_top_ || !NeedsBadPictures(context_, sights)) return;
+    cell->is_covered = false;
+    cell->cause = GapCause::kBadPicture;
   }
   void JudgeCell(const std::vector<int>& candidates, int x, int y, GroundCell* cell) const {
     PredictCell(ground_, *layer_, x, y, cell);

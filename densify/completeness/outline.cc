@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kSide = TiledGrid<GroundCell>::kSide;
 constexpr int kMinBlock = 4;             // cells
-constexpr double kBlocksARadius = 12;    // the disc is drawn that finely
+constexpr double kBlocksARadius = 24;    // the disc is drawn that finely
 constexpr int64_t kMaxBlocks = 1 << 24;  // of the box around all; larger boxes get larger blocks
 
 struct CellBox {
@@ -71,7 +71,11 @@ void Close(double radius_blocks, cv::Mat* inside) {
   cv::distanceTransform(~*inside, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
   cv::Mat grown = distance <= radius_blocks;
   cv::distanceTransform(grown, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
-  *inside |= distance > radius_blocks;
+  // What is added no wider than two blocks comes from the blocks' steps.
+  cv::Mat added = (distance > radius_blocks) & ~*inside;
+  cv::morphologyEx(added, added, cv::MORPH_OPEN,
+                   cv::getStructuringElement(cv::MORPH_RECT, cv::Size(3, 3)));
+  *inside |= added;
 }
 
 Blocks AskedBlocks(const Ground& ground, const AskedArea& asked) {

@@ -29,6 +29,8 @@ bool IsDrawn(const DepthCells& depths, int a, int b) {
 PictureRecord StartRecord(const SurveyView& view, const DepthCells& depths,
                           const PictureFacts& facts) {
   PictureRecord record;
+  record.is_bad = facts.is_bad;
+  record.sharpness = facts.sharpness;
   record.width = (view.camera->width + kPictureCell - 1) / kPictureCell;
   record.height = (view.camera->height + kPictureCell - 1) / kPictureCell;
   for (int b = 0; b < record.height; ++b) {

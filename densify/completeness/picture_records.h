@@ -10,6 +10,8 @@ namespace colmap_seapoint {
 // On the cells of PictureFacts, row by row.
 struct PictureRecord {
   int width = 0, height = 0;
+  bool is_bad = false;   // as PictureFacts
+  double sharpness = 0;  // as PictureFacts
   std::vector<CellState> states;
   std::vector<GapCause> causes;  // kNone where covered, and where nothing is known (open water)
 

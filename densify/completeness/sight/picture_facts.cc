@@ -7,9 +7,11 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr double kDark = 6, kBurnt = 250;  // mean levels
-constexpr double kBlurred = 0.5;           // of the usual sharpness
-constexpr double kTextured = 2;            // levels: below it sharpness is that of the noise
-constexpr double kBadShare = 0.5;          // of cells that are badly exposed
+// Brightness that rises evenly over a cell has that sharpness: as blurred as can be. A picture is
+// blurred when it keeps less than this share of what the usual sharpness has beyond.
+constexpr double kSmooth = 1.0 / 3, kBlurred = 0.4;
+constexpr double kTextured = 2;    // levels: below it sharpness is that of the noise
+constexpr double kBadShare = 0.5;  // of cells that are badly exposed
 
 double MedianOf(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -128,8 +130,9 @@ void JudgePictures(std::vector<PictureFacts>* pictures) {
       if (k != i && sharpness > 0) around.push_back(sharpness);
     }
     const double expected = std::min(usual, around.empty() ? usual : MedianOf(around));
-    picture.is_bad |= (picture.sharpness > 0 && picture.sharpness < kBlurred * expected) ||
-                      BadlyExposedShare(picture) > kBadShare;
+    picture.is_bad |=
+        (picture.sharpness > 0 && picture.sharpness < kSmooth + kBlurred * (expected - kSmooth)) ||
+        BadlyExposedShare(picture) > kBadShare;
   }
 }
 

@@ -11,7 +11,7 @@ constexpr double kDegPerRad = 180 / 3.14159265358979323846;
 const double kMinCosine = std::cos(80 / kDegPerRad);
 // Of the depth, and in cells of the ground: a predicted surface may be off by that without being
 // hidden.
-constexpr double kHiddenShare = 0.03, kHiddenCells = 4;
+constexpr double kHiddenShare = 0.01, kHiddenCells = 3;
 
 // Of a picture that nobody has looked at.
 constexpr uint8_t kUnknownTexture = 255;
@@ -44,6 +44,9 @@ bool HasPair(const std::vector<Sight>& sights, double min_parallax_deg, const Is
   }
   return false;
 }
+
+bool IsGood(SightKind kind) { return kind == SightKind::kGood; }
+bool IsSeen(SightKind kind) { return kind == SightKind::kGood || kind == SightKind::kBad; }
 
 int Count(const std::vector<Sight>& sights, SightKind kind) {
   return static_cast<int>(
@@ -109,22 +112,22 @@ std::optional<double> SecondGsd(const std::vector<Sight>& sights) {
   return gsd[1];
 }
 
+bool NeedsBadPictures(const SightContext& context, const std::vector<Sight>& sights) {
+  return !HasPair(sights, context.min_parallax_deg, IsGood) &&
+         HasPair(sights, context.min_parallax_deg, IsSeen);
+}
+
 GapCause CauseOf(const SightContext& context, const std::vector<Sight>& sights,
                  const Eigen::Vector3d& place) {
   const double angle = context.min_parallax_deg;
-  const bool has_bad = Count(sights, SightKind::kBad) > 0;
   const bool has_hidden = Count(sights, SightKind::kHidden) > 0;
   const bool has_masked = Count(sights, SightKind::kMasked) > 0;
   const int num_good = NumGood(sights);
-  if (HasPair(sights, angle, [](SightKind k) { return k == SightKind::kGood; })) {
+  if (HasPair(sights, angle, IsGood)) {
     return LacksTexture(sights, context.min_texture) ? GapCause::kNoTexture
                                                      : GapCause::kViewsDisagree;
   }
-  if (has_bad && HasPair(sights, angle, [](SightKind k) {
-        return k == SightKind::kGood || k == SightKind::kBad;
-      })) {
-    return GapCause::kBadPicture;
-  }
+  if (HasPair(sights, angle, IsSeen)) return GapCause::kBadPicture;
   if (context.lost->RunThatSaw(place) >= 0) return GapCause::kPoseLost;
   if (has_hidden && HasPair(sights, angle, [](SightKind k) {
         return k == SightKind::kGood || k == SightKind::kBad || k == SightKind::kHidden;

@@ -45,6 +45,10 @@ int NumGood(const std::vector<Sight>& sights);
 // GSD of the better pair: the second smallest of the good ones; nullopt for fewer than two.
 std::optional<double> SecondGsd(const std::vector<Sight>& sights);
 
+// Whether no two good pictures see the place from two sides, but bad ones make up for it: what is
+// measured in blurred pictures is not to be trusted.
+bool NeedsBadPictures(const SightContext& context, const std::vector<Sight>& sights);
+
 // The best cause: the first thing that would have had to be otherwise. kNone when no picture holds
 // the place, not even a hidden, masked or lost one.
 GapCause CauseOf(const SightContext& context, const std::vector<Sight>& sights,

@@ -11,6 +11,9 @@ namespace {
 
 constexpr double kHintWeight = 0.5;
 constexpr double kMaxAreaFactor = 4;
+// Of the 8 cells around: so many must lie within so many cells' sides in height.
+constexpr int kMinAgreeing = 2;
+constexpr double kMaxStep = 2;
 
 double Mean(double mean, double value, uint16_t count) { return mean + (value - mean) / count; }
 
@@ -46,6 +49,19 @@ int CountAround(const GroundLayer& layer, int x, int y) {
   return count;
 }
 
+// Whether a cell lies on one surface with its neighbours: what was matched by chance, of what moved
+// or shows nothing, lies anywhere.
+bool IsCoherent(const GroundLayer& layer, int x, int y, const GroundCell& cell, double side) {
+  int num_agreeing = 0, num_others = 0;
+  for (int k = 0; k < 9; ++k) {
+    const GroundCell* next = layer.cells.Find(x + k % 3 - 1, y + k / 3 - 1);
+    if (k == 4 || next == nullptr || next->count == 0) continue;
+    const bool agrees = std::abs(next->height - cell.height) <= kMaxStep * side;
+    ++(agrees ? num_agreeing : num_others);
+  }
+  return num_agreeing >= kMinAgreeing && num_agreeing >= num_others;
+}
+
 double AreaOf(const Eigen::Vector2d& slope, double side) {
   return side * side * std::min(kMaxAreaFactor, std::sqrt(1 + slope.squaredNorm()));
 }
@@ -60,7 +76,8 @@ void FinishTile(const TileKey& key, double side, GroundLayer* layer) {
     const int x = key.x * kSide + i % kSide, y = key.y * kSide + i / kSide;
     cell.area = static_cast<float>(AreaOf(SlopeAt(*layer, x, y, side), side));
     const double wanted = MinPoints(cell.area, spacing);
-    cell.is_covered = cell.count >= wanted || CountAround(*layer, x, y) >= 9 * wanted;
+    cell.is_covered = (cell.count >= wanted || CountAround(*layer, x, y) >= 9 * wanted) &&
+                      IsCoherent(*layer, x, y, cell, side);
     cell.is_expected = cell.is_imaged = cell.is_covered;
   }
 }

@@ -1,0 +1,210 @@
+// completeness_benchmark plant: a demo survey with planted gaps.
+// completeness_benchmark score: what completeness_reporter says of it, against the exact truth.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <boost/program_options.hpp>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/io/cloud/ply.h"
+#include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/image/image_file.h"
+#include "densify/completeness/surface/asked_area.h"
+#include "examples/benchmarks/completeness/gap_truth.h"
+#include "examples/subcommands.h"
+
+namespace colmap_seapoint {
+namespace {
+
+namespace po = boost::program_options;
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr char kUsage[] =
+    "completeness_benchmark plant --survey_path DIR --output_path OUT [--seed N] [--num_strips N]\n"
+    "completeness_benchmark score --survey_path DIR --planted_path OUT --cloud_path fused.ply "
+    "--report_path REPORT\n";
+
+// OUT/images, OUT/sparse (exact poses, without lost and removed pictures), OUT/planted.json.
+int Plant(const std::vector<std::string>& arguments) {
+  std::string survey_path, output_path;
+  int seed = 1, num_strips = 4;
+  po::options_description description("completeness_benchmark plant");
+  auto add = description.add_options();
+  add("help,h", "this text");
+  add("survey_path", po::value(&survey_path)->required(), "of demo_survey generate");
+  add("output_path", po::value(&output_path)->required(), "folder");
+  add("seed", Default(&seed), "of the places");
+  add("num_strips", Default(&num_strips), "of the survey");
+  if (!ParseOptions(description, arguments)) return 0;
+  const SurveyTruth truth = ReadSurveyTruth(survey_path);
+  const PlantedGaps gaps = ChooseGaps(truth, num_strips, seed);
+  SparseModel model = truth.model;
+  CheckWritableDir(fs::path(output_path) / "images");
+  std::set<uint32_t> gone;
+  for (const PosedImage& image : truth.model.images) {
+    if (gaps.removed.count(image.name) || gaps.lost.count(image.name)) gone.insert(image.image_id);
+    if (gaps.removed.count(image.name)) continue;
+    ColorImage picture = ReadColorImage(fs::path(survey_path) / "images" / image.name);
+    PlantInPicture(truth, gaps, image, &picture);
+    WriteImage(fs::path(output_path) / "images" / image.name, picture);
+  }
+  std::vector<PosedImage> kept;
+  for (PosedImage& image : model.images) {
+    if (!gone.count(image.image_id)) kept.push_back(std::move(image));
+  }
+  model.images = std::move(kept);
+  for (auto it = model.points3D.begin(); it != model.points3D.end();) {
+    auto& track = it->second.track;
+    const bool is_moving = gaps.moving[0].Contains(it->second.xyz.head<2>()) ||
+                           gaps.smooth[0].Contains(it->second.xyz.head<2>());
+    track.erase(std::remove_if(track.begin(), track.end(),
+                               [&](const auto& e) { return gone.count(e.image_id) > 0; }),
+                track.end());
+    if (track.size() >= 2 && !is_moving) {
+      ++it;
+      continue;
+    }
+    const uint64_t id = it->first;
+    for (PosedImage& image : model.images) {
+      for (uint64_t& of : image.point3D_ids) {
+        if (of == id) of = kNoPoint3D;
+      }
+    }
+    it = model.points3D.erase(it);
+  }
+  WriteSparseModelText(fs::path(output_path) / "sparse", model);
+  WritePlantedGaps(fs::path(output_path) / "planted.json", gaps);
+  return 0;
+}
+
+struct ReportedGaps {
+  double spacing = 0, covered_share = 0;
+  struct One {
+    std::string cause;
+    AskedArea area;
+  };
+  std::vector<One> gaps;
+};
+
+ReportedGaps ReadReported(const fs::path& path) {
+  std::ifstream in(path / "completeness.json");
+  const Json json = Json::parse(in);
+  ReportedGaps reported{json.at("spacing"), json.at("covered_share"), {}};
+  for (const Json& gap : json.at("gaps")) {
+    if (gap.at("layer") != "top") continue;
+    ReportedGaps::One one{gap.at("cause"), {}};
+    for (const Json& ring : gap.at("outline")) {
+      Ring& corners = one.area.rings.emplace_back();
+      for (const Json& p : ring) corners.emplace_back(p[0], p[1]);
+    }
+    reported.gaps.push_back(std::move(one));
+  }
+  return reported;
+}
+
+struct Tally {
+  double truth = 0, found = 0, reported = 0, right = 0, right_cause = 0;
+};
+
+int Score(const std::vector<std::string>& arguments) {
+  std::string survey_path, planted_path, cloud_path, report_path;
+  po::options_description description("completeness_benchmark score");
+  auto add = description.add_options();
+  add("help,h", "this text");
+  add("survey_path", po::value(&survey_path)->required(), "of demo_survey generate");
+  add("planted_path", po::value(&planted_path)->required(), "of plant");
+  add("cloud_path", po::value(&cloud_path)->required(), "PLY, exact poses");
+  add("report_path", po::value(&report_path)->required(), "of completeness_reporter");
+  if (!ParseOptions(description, arguments)) return 0;
+  const SurveyTruth truth = ReadSurveyTruth(survey_path);
+  const ReportedGaps reported = ReadReported(report_path);
+  std::vector<Eigen::Vector3f> points;
+  for (const CloudPoint& p : ReadCloud(cloud_path)) points.push_back(p.xyz);
+  const GapTruth gaps =
+      MeasureGapTruth(truth, ReadPlantedGaps(fs::path(planted_path) / "planted.json"),
+                      reported.spacing, points, -1);
+  // Which reported gap holds each cell.
+  std::vector<int> owner(gaps.cells.size(), -1);
+  for (size_t g = 0; g < reported.gaps.size(); ++g) {
+    Eigen::AlignedBox2d box;
+    for (const Ring& ring : reported.gaps[g].area.rings) {
+      for (const Eigen::Vector2d& p : ring) box.extend(p);
+    }
+    for (int j = 0; j < gaps.ny; ++j) {
+      for (int i = 0; i < gaps.nx; ++i) {
+        const Eigen::Vector2d p = gaps.Place(i, j);
+        if (box.contains(p) && reported.gaps[g].area.Contains(p)) {
+          owner[static_cast<size_t>(j * gaps.nx + i)] = static_cast<int>(g);
+        }
+      }
+    }
+  }
+  std::map<std::string, Tally> by_cause;
+  Tally all;
+  double covered = 0, expected = 0;
+  std::map<std::pair<std::string, std::string>, double> confusion;
+  for (size_t k = 0; k < gaps.cells.size(); ++k) {
+    const TruthCell& cell = gaps.cells[k];
+    const std::string cause = GapCauseName(cell.cause);
+    const double flat = gaps.side * gaps.side;
+    if (cell.is_expected) expected += cell.area;
+    if (cell.is_covered) covered += cell.area;
+    if (owner[k] >= 0) {
+      const std::string said = reported.gaps[static_cast<size_t>(owner[k])].cause;
+      all.reported += flat;
+      by_cause[said].reported += flat;
+      if (cell.is_expected && !cell.is_covered) {
+        all.right += flat;
+        by_cause[said].right += flat;
+      }
+    }
+    if (!cell.is_gap) continue;
+    all.truth += flat;
+    by_cause[cause].truth += flat;
+    if (owner[k] < 0) {
+      confusion[{cause, "-"}] += flat;
+      continue;
+    }
+    const std::string said = reported.gaps[static_cast<size_t>(owner[k])].cause;
+    confusion[{cause, said}] += flat;
+    all.found += flat;
+    by_cause[cause].found += flat;
+    if (said == cause) {
+      all.right_cause += flat;
+      by_cause[cause].right_cause += flat;
+    }
+  }
+  const auto row = [](const char* name, const Tally& t) {
+    std::printf(
+        "%-15s truth %8.3f m2  recall %5.1f %%  reported %8.3f  precision %5.1f %%  cause %5.1f "
+        "%%\n",
+        name, t.truth, 100 * t.found / std::max(t.truth, 1e-12), t.reported,
+        100 * t.right / std::max(t.reported, 1e-12),
+        100 * t.right_cause / std::max(t.found, 1e-12));
+  };
+  for (const auto& [name, tally] : by_cause) row(name.c_str(), tally);
+  row("all", all);
+  for (const auto& [pair, area] : confusion) {
+    if (area > 0.01 * all.truth && pair.first != pair.second) {
+      std::printf("   %s said to be %s: %.3f m2\n", pair.first.c_str(), pair.second.c_str(), area);
+    }
+  }
+  std::printf("covered share: said %.2f %%, true %.2f %% (spacing %.3f gsd)\n",
+              100 * reported.covered_share, 100 * covered / expected, reported.spacing / truth.gsd);
+  return 0;
+}
+
+}  // namespace
+}  // namespace colmap_seapoint
+
+int main(int argc, char** argv) {
+  using namespace colmap_seapoint;
+  return RunSubcommands(argc, argv, "completeness_benchmark", kUsage,
+                        {{"plant", Plant}, {"score", Score}});
+}
