@@ -12,10 +12,10 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr size_t kNumNearest = 5;
-// The gaps that are listed: (10 wanted spacings)^2 and more, and a square of 8 spacings fits into
+// The gaps that are listed: (10 wanted spacings)^2 and more, and a square of 4 spacings fits into
 // them.
 constexpr double kMinGapSpacings = 10;
-constexpr int kMinGapCells = 4;
+constexpr int kMinGapCells = 2;
 // Radius of the disc that closes the outline, in widths of a picture.
 constexpr double kOutlineRadius = 0.5;
 
@@ -34,29 +34,41 @@ void CountPoints(const CompletenessInput& input, double min_confidence, Ground* 
   for (const auto& [id, point] : input.model->points3D) AddHint(point.xyz, ground);
 }
 
-// Area that is covered when squares of `size` cells are asked for half the points of `spacing`.
-double CoveredArea(int size, double spacing, Ground* ground) {
+// Area that is covered when squares of `size` cells, above 1, are asked for half the points of
+// `spacing`.
+double CoveredArea(int size, double spacing, GroundLayer* layer) {
+  struct Block {
+    double area = 0, covered = 0;
+    int64_t count = 0;
+  };
+  TiledGrid<Block> blocks;
+  const auto block_of = [&](int at) { return at >= 0 ? at / size : -1 - (-1 - at) / size; };
+  layer->cells.ForEach([&](int x, int y, const GroundCell& cell) {
+    if (!cell.is_expected) return;
+    Block& block = blocks.At(block_of(x), block_of(y));
+    block.area += cell.area;
+    block.count += cell.count;
+    if (cell.is_covered) block.covered += cell.area;
+  });
   double covered = 0;
-  for (auto& [key, layer] : ground->layers) {
-    struct Block {
-      double area = 0, covered = 0;
-      int64_t count = 0;
-    };
-    TiledGrid<Block> blocks;
-    const auto block_of = [&](int at) { return at >= 0 ? at / size : -1 - (-1 - at) / size; };
-    layer.cells.ForEach([&](int x, int y, const GroundCell& cell) {
-      if (!cell.is_expected) return;
-      Block& block = blocks.At(block_of(x), block_of(y));
-      block.area += cell.area;
-      block.count += cell.count;
-      if (cell.is_covered) block.covered += cell.area;
-    });
-    blocks.ForEach([&](int, int, const Block& block) {
-      const bool is_enough = static_cast<double>(block.count) >= MinPoints(block.area, spacing);
-      covered += size > 1 && is_enough ? block.area : block.covered;
-    });
-  }
+  blocks.ForEach([&](int, int, const Block& block) {
+    const bool is_enough = static_cast<double>(block.count) >= MinPoints(block.area, spacing);
+    covered += is_enough ? block.area : block.covered;
+  });
   return covered;
+}
+
+void MeasureCoverage(double covered, CompletenessResult* result) {
+  for (size_t k = 0; k < result->coverage.size(); ++k) {
+    const int size = 1 << k;
+    CoverageAt& at = result->coverage[k];
+    at.spacing = size * result->spacing;
+    at.area = k == 0 ? covered : 0;
+    for (auto& [key, layer] : result->ground.layers) {
+      if (k > 0) at.area += CoveredArea(size, at.spacing, &layer);
+    }
+    if (result->expected_area > 0) at.share = at.area / result->expected_area;
+  }
 }
 
 void Measure(CompletenessResult* result) {
@@ -82,13 +94,7 @@ void Measure(CompletenessResult* result) {
   if (num_sampled > 0) result->mean_views = views / static_cast<double>(num_sampled);
   result->median_parallax_deg = MedianOf(std::move(parallax));
   if (covered > 0) result->points_per_area = points / covered;
-  for (size_t k = 0; k < result->coverage.size(); ++k) {
-    const int size = 1 << k;
-    CoverageAt& at = result->coverage[k];
-    at.spacing = size * result->spacing;
-    at.area = CoveredArea(size, at.spacing, &result->ground);
-    if (result->expected_area > 0) at.share = at.area / result->expected_area;
-  }
+  MeasureCoverage(covered, result);
 }
 
 std::vector<int> NearestPictures(const std::vector<SurveyView>& views,

@@ -17,6 +17,10 @@ constexpr int kSampleCells = 4;
 // A hole on a wall: covered within so many cells in three of four directions, at about its depth.
 constexpr int kHoleReach = 24, kHoleDepth = 12;
 constexpr double kDenseTile = 0.25;
+// What blurred pictures alone have measured counts where so many of the 8 cells around are within
+// that many cells' sides in height.
+constexpr int kMinSmooth = 4;
+constexpr double kSmoothStep = 0.5;
 
 struct Box {
   Eigen::Vector2d low, high;
@@ -113,7 +117,7 @@ class TileJudge {
       if (!cell.is_covered) {
         JudgeCell(candidates, x, y, &cell);
       } else if (has_bad || (x % kSampleCells == 0 && y % kSampleCells == 0)) {
-        JudgeCovered(SightsAt(candidates, x, y, cell), &cell);
+        JudgeCovered(SightsAt(candidates, x, y, cell), x, y, &cell);
       }
       RespectArea(x, y, &cell);
     }
@@ -129,6 +133,17 @@ class TileJudge {
       if ((*context_.views)[i].MaySee(middle, radius)) candidates.push_back(static_cast<int>(i));
     }
     return candidates;
+  }
+  // Whether most neighbours lie at the same height, to what a spacing is worth.
+  bool IsSmooth(int x, int y, const GroundCell& cell) const {
+    int num_agreeing = 0;
+    for (int k = 0; k < 9; ++k) {
+      const GroundCell* next = layer_->cells.Find(x + k % 3 - 1, y + k / 3 - 1);
+      if (k == 4 || next == nullptr || next->count == 0) continue;
+      const double step = std::abs(next->height - cell.height);
+      num_agreeing += step <= kSmoothStep * ground_.cell_side ? 1 : 0;
+    }
+    return num_agreeing >= kMinSmooth;
   }
   bool HasBad(const std::vector<int>& candidates) const {
     return std::any_of(candidates.begin(), candidates.end(),
@@ -146,9 +161,9 @@ class TileJudge {
     cell->parallax_deg = static_cast<uint8_t>(std::lround(ParallaxDeg(sights)));
   }
   // What other layers look at must not change while they do.
-  void JudgeCovered(const std::vector<Sight>& sights, GroundCell* cell) const {
+  void JudgeCovered(const std::vector<Sight>& sights, int x, int y, GroundCell* cell) const {
     Note(sights, cell);
-    if (!is_top_ || !NeedsBadPictures(context_, sights)) return;
+    if (!is_top_ || !NeedsBadPictures(context_, sights) || IsSmooth(x, y, *cell)) return;
     cell->is_covered = false;
     cell->cause = GapCause::kBadPicture;
   }

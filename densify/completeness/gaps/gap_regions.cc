@@ -19,9 +19,10 @@ struct Mark {
 using Marks = TiledGrid<Mark>;
 
 // Windows are small: they are walked cell by cell.
-constexpr int kSmoothReach = 2;   // cells: majority of 5 x 5 decides what is missing
-constexpr double kMissing = 0.6;  // of the cells that are expected there
-constexpr int kCauseReach = 5;    // cells: the commonest cause of 11 x 11
+constexpr int kSmoothReach = 1;    // cells: majority of 3 x 3 decides what is missing
+constexpr double kMissing = 0.55;  // of the cells that are expected there
+constexpr int kSliverCells = 4;    // a region that holds no such square is a sliver
+constexpr int kCauseReach = 5;     // cells: the commonest cause of 11 x 11
 
 bool IsMissing(const GroundCell& cell) { return cell.is_expected && !cell.is_covered; }
 
@@ -196,7 +197,7 @@ void FindInLayer(const LayerKey& key, int min_cells, double min_area, double cel
   }
   for (size_t i = 0; i < open.size(); ++i)
     marks.At(open[i].first, open[i].second).cause = smooth[i];
-  for (Cells& cells : MergeSlivers(open, min_cells, &marks)) {
+  for (Cells& cells : MergeSlivers(open, kSliverCells, &marks)) {
     GapRegion region = MakeRegion(key, *layer, marks, cell_side, std::move(cells));
     if (region.area >= min_area) regions->push_back(std::move(region));
   }

@@ -1,7 +1,9 @@
 // completeness_benchmark plant: a demo survey with planted gaps.
+// completeness_benchmark cover: an exact cloud of a whole survey.
 // completeness_benchmark score: what completeness_reporter says of it, against the exact truth.
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <boost/program_options.hpp>
 #include <cmath>
 #include <cstdio>
@@ -28,7 +30,8 @@ using Json = nlohmann::json;
 constexpr char kUsage[] =
     "completeness_benchmark plant --survey_path DIR --output_path OUT [--seed N] [--num_strips N]\n"
     "completeness_benchmark score --survey_path DIR --planted_path OUT --cloud_path fused.ply "
-    "--report_path REPORT\n";
+    "--report_path REPORT\n"
+    "completeness_benchmark cover --survey_path DIR --output_path CLOUD\n";
 
 // OUT/images, OUT/sparse (exact poses, without lost and removed pictures), OUT/planted.json.
 int Plant(const std::vector<std::string>& arguments) {
@@ -83,6 +86,35 @@ int Plant(const std::vector<std::string>& arguments) {
   return 0;
 }
 
+// An exact cloud of the whole ground, for what large surveys cost.
+int Cover(const std::vector<std::string>& arguments) {
+  std::string survey_path, output_path;
+  double points = 20e6;
+  po::options_description description("completeness_benchmark cover");
+  auto add = description.add_options();
+  add("help,h", "this text");
+  add("survey_path", po::value(&survey_path)->required(), "of demo_survey generate");
+  add("output_path", po::value(&output_path)->required(), "PLY");
+  add("num_points", Default(&points), "about");
+  if (!ParseOptions(description, arguments)) return 0;
+  const SurveyTruth truth = ReadSurveyTruth(survey_path);
+  const GridSpec& grid = truth.surface.Ground().Grid();
+  const double width = grid.MaxX() - grid.MinX(), height = grid.MaxY() - grid.MinY();
+  const double step = std::sqrt(width * height / points);
+  CloudWriter writer(output_path);
+  for (double y = grid.MinY() + step; y < grid.MaxY(); y += step) {
+    for (double x = grid.MinX() + step; x < grid.MaxX(); x += step) {
+      const SurfaceHit hit = truth.surface.GroundAt(x, y);
+      const uint32_t seen_by[2] = {0, 1};
+      writer.Add({hit.xyz.cast<float>(), hit.normal.cast<float>(), {0, 0, 0}, 1}, seen_by, 2);
+    }
+  }
+  writer.Finish();
+  std::printf("%zu points, %.3f gsd apart\n", static_cast<size_t>(writer.NumPoints()),
+              step / truth.gsd);
+  return 0;
+}
+
 struct ReportedGaps {
   double spacing = 0, covered_share = 0;
   struct One {
@@ -108,12 +140,38 @@ ReportedGaps ReadReported(const fs::path& path) {
   return reported;
 }
 
+// Red: a gap that was not found; blue: found, but none; yellow: a gap of another cause; green:
+// right. Grey: covered; black: not expected.
+void DrawScore(const GapTruth& truth, const std::vector<int>& owner, const ReportedGaps& reported,
+               const std::string& path) {
+  ColorImage picture(truth.nx, truth.ny, 3);
+  for (int j = 0; j < truth.ny; ++j) {
+    for (int i = 0; i < truth.nx; ++i) {
+      const TruthCell& cell = truth.At(i, j);
+      const int g = owner[static_cast<size_t>(j * truth.nx + i)];
+      const bool is_missing = cell.is_expected && !cell.is_covered;
+      std::array<uint8_t, 3> rgb = {0, 0, 0};
+      if (cell.is_covered) rgb = {110, 110, 110};
+      if (is_missing) rgb = {170, 150, 150};
+      if (cell.is_gap && g < 0) rgb = {255, 0, 0};
+      if (!is_missing && g >= 0) rgb = {60, 60, 255};
+      if (is_missing && g >= 0) {
+        const bool is_right =
+            reported.gaps[static_cast<size_t>(g)].cause == GapCauseName(cell.cause);
+        rgb = is_right ? std::array<uint8_t, 3>{0, 180, 0} : std::array<uint8_t, 3>{240, 220, 0};
+      }
+      for (int c = 0; c < 3; ++c) picture.At(i, truth.ny - 1 - j, c) = rgb[static_cast<size_t>(c)];
+    }
+  }
+  WriteImage(path, picture);
+}
+
 struct Tally {
   double truth = 0, found = 0, reported = 0, right = 0, right_cause = 0;
 };
 
 int Score(const std::vector<std::string>& arguments) {
-  std::string survey_path, planted_path, cloud_path, report_path;
+  std::string survey_path, planted_path, cloud_path, report_path, picture_path;
   po::options_description description("completeness_benchmark score");
   auto add = description.add_options();
   add("help,h", "this text");
@@ -121,6 +179,7 @@ int Score(const std::vector<std::string>& arguments) {
   add("planted_path", po::value(&planted_path)->required(), "of plant");
   add("cloud_path", po::value(&cloud_path)->required(), "PLY, exact poses");
   add("report_path", po::value(&report_path)->required(), "of completeness_reporter");
+  add("picture_path", po::value(&picture_path), "PNG to write: what is right, and what not");
   if (!ParseOptions(description, arguments)) return 0;
   const SurveyTruth truth = ReadSurveyTruth(survey_path);
   const ReportedGaps reported = ReadReported(report_path);
@@ -145,6 +204,7 @@ int Score(const std::vector<std::string>& arguments) {
       }
     }
   }
+  if (!picture_path.empty()) DrawScore(gaps, owner, reported, picture_path);
   std::map<std::string, Tally> by_cause;
   Tally all;
   double covered = 0, expected = 0;
@@ -162,6 +222,8 @@ int Score(const std::vector<std::string>& arguments) {
       if (cell.is_expected && !cell.is_covered) {
         all.right += flat;
         by_cause[said].right += flat;
+      } else {
+        confusion[{cell.is_expected ? "(covered)" : "(not expected)", said}] += flat;
       }
     }
     if (!cell.is_gap) continue;
@@ -206,5 +268,5 @@ int Score(const std::vector<std::string>& arguments) {
 int main(int argc, char** argv) {
   using namespace colmap_seapoint;
   return RunSubcommands(argc, argv, "completeness_benchmark", kUsage,
-                        {{"plant", Plant}, {"score", Score}});
+                        {{"plant", Plant}, {"cover", Cover}, {"score", Score}});
 }
