@@ -17,7 +17,7 @@ constexpr size_t kNumNearest = 5;
 constexpr double kMinGapSpacings = 10;
 constexpr int kMinGapCells = 2;
 // Radius of the disc that closes the outline, in widths of a picture.
-constexpr double kOutlineRadius = 0.5;
+constexpr double kOutlineRadius = 0.75;
 
 double StepOf(const SparseModel& model, const CompletenessOptions& options) {
   std::vector<double> steps;

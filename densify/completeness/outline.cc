@@ -71,10 +71,13 @@ void Close(double radius_blocks, cv::Mat* inside) {
   cv::distanceTransform(~*inside, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
   cv::Mat grown = distance <= radius_blocks;
   cv::distanceTransform(grown, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
-  // What is added no wider than two blocks comes from the blocks' steps.
   cv::Mat added = (distance > radius_blocks) & ~*inside;
+  // What is added no wider than two blocks comes from the blocks' steps.
   cv::morphologyEx(added, added, cv::MORPH_OPEN,
                    cv::getStructuringElement(cv::MORPH_RECT, cv::Size(3, 3)));
+  // The outermost blocks are imaged in part: beyond is no hole.
+  *inside |= added;
+  cv::erode(*inside, *inside, cv::Mat(), cv::Point(-1, -1), 1, cv::BORDER_CONSTANT, 0);
   *inside |= added;
 }
 

@@ -9,7 +9,7 @@ namespace {
 constexpr double kDark = 6, kBurnt = 250;  // mean levels
 // Brightness that rises evenly over a cell has that sharpness: as blurred as can be. A picture is
 // blurred when it keeps less than this share of what the usual sharpness has beyond.
-constexpr double kSmooth = 1.0 / 3, kBlurred = 0.4;
+constexpr double kSmooth = 0.22, kBlurred = 0.5;
 constexpr double kTextured = 2;    // levels: below it sharpness is that of the noise
 constexpr double kBadShare = 0.5;  // of cells that are badly exposed
 
@@ -36,13 +36,13 @@ struct HalvedCell {
       }
     }
   }
-  // Mean squared difference of values `step` apart, both ways.
-  double Contrast(int step) const {
+  // Mean squared difference of neighbours, both ways.
+  double Contrast() const {
     double sum = 0;
     int count = 0;
-    for (int j = 0; j + step < height; ++j) {
-      for (int i = 0; i + step < width; ++i) {
-        const double dx = value[j][i + step] - value[j][i], dy = value[j + step][i] - value[j][i];
+    for (int j = 0; j + 1 < height; ++j) {
+      for (int i = 0; i + 1 < width; ++i) {
+        const double dx = value[j][i + 1] - value[j][i], dy = value[j + 1][i] - value[j][i];
         sum += dx * dx + dy * dy;
         count += 2;
       }
@@ -68,8 +68,10 @@ CellMeasure MeasureCell(const HalvedCell& cell) {
   }
   measure.mean = sum / count;
   measure.deviation = std::sqrt(std::max(0.0, squares / count - measure.mean * measure.mean));
-  const double coarse = cell.Contrast(3);
-  if (coarse > 0) measure.sharpness = std::sqrt(cell.Contrast(1) / coarse);
+  // White noise: 1. What is smeared in one direction alone loses some of it, too.
+  if (measure.deviation > 0) {
+    measure.sharpness = std::sqrt(0.5 * cell.Contrast()) / measure.deviation;
+  }
   return measure;
 }
 

@@ -17,8 +17,8 @@ struct PictureFacts {
   int width = 0, height = 0;     // cells
   std::vector<uint8_t> texture;  // deviation of brightness within the cell, in quarters of a level
   std::vector<uint8_t> flags;    // PictureCellFlag
-  double sharpness = 0;          // of the picture: fine over coarse contrast, median of its cells
-  bool is_bad = false;           // blurred or badly exposed as a whole (JudgePictures)
+  double sharpness = 0;  // of the picture: contrast of neighbours over that of cells, their median
+  bool is_bad = false;   // blurred or badly exposed as a whole (JudgePictures)
 
   bool Empty() const { return texture.empty(); }
   // Of a pixel position, clamped into the picture.
