@@ -166,9 +166,88 @@ void DrawScore(const GapTruth& truth, const std::vector<int>& owner, const Repor
   WriteImage(path, picture);
 }
 
+// m^2 on the plan.
 struct Tally {
   double truth = 0, found = 0, reported = 0, right = 0, right_cause = 0;
 };
+
+struct Tallies {
+  Tally all;
+  std::map<std::string, Tally> by_cause;
+  std::map<std::pair<std::string, std::string>, double> confusion;  // true, said
+  double covered = 0, expected = 0;                                 // along the surface
+};
+
+// Which reported gap holds each cell; -1: none.
+std::vector<int> OwnersOf(const GapTruth& truth, const ReportedGaps& reported) {
+  std::vector<int> owner(truth.cells.size(), -1);
+  for (size_t g = 0; g < reported.gaps.size(); ++g) {
+    Eigen::AlignedBox2d box;
+    for (const Ring& ring : reported.gaps[g].area.rings) {
+      for (const Eigen::Vector2d& p : ring) box.extend(p);
+    }
+    for (size_t k = 0; k < owner.size(); ++k) {
+      const int i = static_cast<int>(k) % truth.nx, j = static_cast<int>(k) / truth.nx;
+      const Eigen::Vector2d p = truth.Place(i, j);
+      if (box.contains(p) && reported.gaps[g].area.Contains(p)) owner[k] = static_cast<int>(g);
+    }
+  }
+  return owner;
+}
+
+void TallyReported(const TruthCell& cell, const std::string& said, double area, Tallies* t) {
+  t->all.reported += area;
+  t->by_cause[said].reported += area;
+  if (cell.is_expected && !cell.is_covered) {
+    t->all.right += area;
+    t->by_cause[said].right += area;
+  } else {
+    t->confusion[{cell.is_expected ? "(covered)" : "(not expected)", said}] += area;
+  }
+}
+
+// `said`: "-" where no gap was reported.
+void TallyGap(const std::string& cause, const std::string& said, double area, Tallies* t) {
+  for (Tally* tally : {&t->all, &t->by_cause[cause]}) {
+    tally->truth += area;
+    if (said != "-") tally->found += area;
+    if (said == cause) tally->right_cause += area;
+  }
+  t->confusion[{cause, said}] += area;
+}
+
+Tallies TallyCells(const GapTruth& truth, const std::vector<int>& owner,
+                   const ReportedGaps& reported) {
+  Tallies tallies;
+  const double area = truth.side * truth.side;
+  for (size_t k = 0; k < truth.cells.size(); ++k) {
+    const TruthCell& cell = truth.cells[k];
+    if (cell.is_expected) tallies.expected += cell.area;
+    if (cell.is_covered) tallies.covered += cell.area;
+    const std::string said =
+        owner[k] < 0 ? "-" : reported.gaps[static_cast<size_t>(owner[k])].cause;
+    if (owner[k] >= 0) TallyReported(cell, said, area, &tallies);
+    if (cell.is_gap) TallyGap(GapCauseName(cell.cause), said, area, &tallies);
+  }
+  return tallies;
+}
+
+void PrintRow(const char* name, const Tally& t) {
+  std::printf(
+      "%-15s truth %8.3f m2  recall %5.1f %%  reported %8.3f  precision %5.1f %%  cause %5.1f %%\n",
+      name, t.truth, 100 * t.found / std::max(t.truth, 1e-12), t.reported,
+      100 * t.right / std::max(t.reported, 1e-12), 100 * t.right_cause / std::max(t.found, 1e-12));
+}
+
+void PrintTallies(const Tallies& tallies) {
+  for (const auto& [name, tally] : tallies.by_cause) PrintRow(name.c_str(), tally);
+  PrintRow("all", tallies.all);
+  for (const auto& [pair, area] : tallies.confusion) {
+    if (area > 0.01 * tallies.all.truth && pair.first != pair.second) {
+      std::printf("   %s said to be %s: %.3f m2\n", pair.first.c_str(), pair.second.c_str(), area);
+    }
+  }
+}
 
 int Score(const std::vector<std::string>& arguments) {
   std::string survey_path, planted_path, cloud_path, report_path, picture_path;
@@ -188,77 +267,13 @@ int Score(const std::vector<std::string>& arguments) {
   const GapTruth gaps =
       MeasureGapTruth(truth, ReadPlantedGaps(fs::path(planted_path) / "planted.json"),
                       reported.spacing, points, -1);
-  // Which reported gap holds each cell.
-  std::vector<int> owner(gaps.cells.size(), -1);
-  for (size_t g = 0; g < reported.gaps.size(); ++g) {
-    Eigen::AlignedBox2d box;
-    for (const Ring& ring : reported.gaps[g].area.rings) {
-      for (const Eigen::Vector2d& p : ring) box.extend(p);
-    }
-    for (int j = 0; j < gaps.ny; ++j) {
-      for (int i = 0; i < gaps.nx; ++i) {
-        const Eigen::Vector2d p = gaps.Place(i, j);
-        if (box.contains(p) && reported.gaps[g].area.Contains(p)) {
-          owner[static_cast<size_t>(j * gaps.nx + i)] = static_cast<int>(g);
-        }
-      }
-    }
-  }
+  const std::vector<int> owner = OwnersOf(gaps, reported);
   if (!picture_path.empty()) DrawScore(gaps, owner, reported, picture_path);
-  std::map<std::string, Tally> by_cause;
-  Tally all;
-  double covered = 0, expected = 0;
-  std::map<std::pair<std::string, std::string>, double> confusion;
-  for (size_t k = 0; k < gaps.cells.size(); ++k) {
-    const TruthCell& cell = gaps.cells[k];
-    const std::string cause = GapCauseName(cell.cause);
-    const double flat = gaps.side * gaps.side;
-    if (cell.is_expected) expected += cell.area;
-    if (cell.is_covered) covered += cell.area;
-    if (owner[k] >= 0) {
-      const std::string said = reported.gaps[static_cast<size_t>(owner[k])].cause;
-      all.reported += flat;
-      by_cause[said].reported += flat;
-      if (cell.is_expected && !cell.is_covered) {
-        all.right += flat;
-        by_cause[said].right += flat;
-      } else {
-        confusion[{cell.is_expected ? "(covered)" : "(not expected)", said}] += flat;
-      }
-    }
-    if (!cell.is_gap) continue;
-    all.truth += flat;
-    by_cause[cause].truth += flat;
-    if (owner[k] < 0) {
-      confusion[{cause, "-"}] += flat;
-      continue;
-    }
-    const std::string said = reported.gaps[static_cast<size_t>(owner[k])].cause;
-    confusion[{cause, said}] += flat;
-    all.found += flat;
-    by_cause[cause].found += flat;
-    if (said == cause) {
-      all.right_cause += flat;
-      by_cause[cause].right_cause += flat;
-    }
-  }
-  const auto row = [](const char* name, const Tally& t) {
-    std::printf(
-        "%-15s truth %8.3f m2  recall %5.1f %%  reported %8.3f  precision %5.1f %%  cause %5.1f "
-        "%%\n",
-        name, t.truth, 100 * t.found / std::max(t.truth, 1e-12), t.reported,
-        100 * t.right / std::max(t.reported, 1e-12),
-        100 * t.right_cause / std::max(t.found, 1e-12));
-  };
-  for (const auto& [name, tally] : by_cause) row(name.c_str(), tally);
-  row("all", all);
-  for (const auto& [pair, area] : confusion) {
-    if (area > 0.01 * all.truth && pair.first != pair.second) {
-      std::printf("   %s said to be %s: %.3f m2\n", pair.first.c_str(), pair.second.c_str(), area);
-    }
-  }
+  const Tallies tallies = TallyCells(gaps, owner, reported);
+  PrintTallies(tallies);
   std::printf("covered share: said %.2f %%, true %.2f %% (spacing %.3f gsd)\n",
-              100 * reported.covered_share, 100 * covered / expected, reported.spacing / truth.gsd);
+              100 * reported.covered_share, 100 * tallies.covered / tallies.expected,
+              reported.spacing / truth.gsd);
   return 0;
 }
 
