@@ -34,7 +34,7 @@ void CountPoints(const CompletenessInput& input, double min_confidence, Ground* 
   for (const auto& [id, point] : input.model->points3D) AddHint(point.xyz, ground);
 }
 
-// Area that is covered when squares of `size` cells, above 1, are asked for half the points of
+// Area that is covered when squares of `size` cells, above 1, are asked for the points of
 // `spacing`.
 double CoveredArea(int size, double spacing, GroundLayer* layer) {
   struct Block {
@@ -52,7 +52,8 @@ double CoveredArea(int size, double spacing, GroundLayer* layer) {
   });
   double covered = 0;
   blocks.ForEach([&](int, int, const Block& block) {
-    const bool is_enough = static_cast<double>(block.count) >= MinPoints(block.area, spacing);
+    const bool is_enough =
+        static_cast<double>(block.count) >= kCoveredShare * WantedPoints(block.area, spacing);
     covered += is_enough ? block.area : block.covered;
   });
   return covered;

@@ -61,7 +61,7 @@ struct Gap {
   double AreaPerLength() const { return region.area / pass.length; }
 };
 
-// What half as many points as the spacing asks for cover.
+// What as many points as a spacing asks for cover (ground.h).
 struct CoverageAt {
   double spacing = 0;  // units
   double area = 0;     // units^2, of what is expected

@@ -176,7 +176,7 @@ class TileJudge {
     cell->is_imaged = cell->is_expected = true;
     const auto gsd = SecondGsd(sights);
     if (is_top_ && options_.pixels_a_point > 0 && gsd && cell->count > 0 &&
-        cell->count >= MinPoints(cell->area, *gsd * options_.pixels_a_point)) {
+        cell->count >= kCoveredShare * WantedPoints(cell->area, *gsd * options_.pixels_a_point)) {
       cell->is_covered = true;
       return;
     }

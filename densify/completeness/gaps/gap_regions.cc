@@ -24,7 +24,9 @@ constexpr double kMissing = 0.55;  // of the cells that are expected there
 constexpr int kSliverCells = 4;    // a region that holds no such square is a sliver
 constexpr int kCauseReach = 5;     // cells: the commonest cause of 11 x 11
 
-bool IsMissing(const GroundCell& cell) { return cell.is_expected && !cell.is_covered; }
+bool IsMissing(const GroundCell& cell) {
+  return cell.is_expected && !cell.is_covered && !cell.is_thin;
+}
 
 // What most of a cell's surroundings are: holes of single cells in the cloud are no gap, and a
 // stray point within a gap closes nothing.
@@ -35,7 +37,7 @@ bool IsMissingAround(const GroundLayer& layer, int x, int y) {
       const GroundCell* cell = layer.cells.Find(x + dx, y + dy);
       if (cell == nullptr || !cell->is_expected) continue;
       ++num_expected;
-      num_missing += cell->is_covered ? 0 : 1;
+      num_missing += IsMissing(*cell) ? 1 : 0;
     }
   }
   return num_missing >= kMissing * num_expected;

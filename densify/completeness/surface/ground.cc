@@ -75,16 +75,18 @@ void FinishTile(const TileKey& key, double side, GroundLayer* layer) {
     if (cell.count == 0) continue;
     const int x = key.x * kSide + i % kSide, y = key.y * kSide + i / kSide;
     cell.area = static_cast<float>(AreaOf(SlopeAt(*layer, x, y, side), side));
-    const double wanted = MinPoints(cell.area, spacing);
-    cell.is_covered = (cell.count >= wanted || CountAround(*layer, x, y) >= 9 * wanted) &&
-                      IsCoherent(*layer, x, y, cell, side);
+    const double wanted = WantedPoints(cell.area, spacing);
+    const double share = std::max(cell.count / wanted, CountAround(*layer, x, y) / (9 * wanted));
+    const bool is_coherent = IsCoherent(*layer, x, y, cell, side);
+    cell.is_covered = is_coherent && share >= kCoveredShare;
+    cell.is_thin = is_coherent && !cell.is_covered && share >= kThinShare;
     cell.is_expected = cell.is_imaged = cell.is_covered;
   }
 }
 
 }  // namespace
 
-double MinPoints(double area, double spacing) { return 0.5 * area / (spacing * spacing); }
+double WantedPoints(double area, double spacing) { return area / (spacing * spacing); }
 
 GroundLayer& Ground::LayerAt(const LayerKey& key) {
   const auto place = layers.find(key);

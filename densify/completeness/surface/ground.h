@@ -27,6 +27,7 @@ struct GroundCell {
   float area = 0;      // units^2 of surface, along its slope
   uint16_t count = 0;  // points of enough confidence
   bool is_covered = false;
+  bool is_thin = false;      // not covered, yet with too many points to call it a gap
   bool is_imaged = false;    // in the frame of a picture, be it hidden there
   bool is_expected = false;  // part of what the survey should have covered
   GapCause cause = GapCause::kNone;
@@ -72,14 +73,17 @@ void AddPoint(const SurfacePoint& point, Ground* ground);
 void AddHint(const Eigen::Vector3d& xyz, Ground* ground);
 
 // To be called once, after all points: heights, areas and which cells are covered. A cell is
-// covered when it and its neighbours hold half as many points as the spacing asks for on a surface
-// of that slope. Threads: any number, the same result.
+// covered when it, or it and its neighbours together, hold 0.7 of the points that the spacing asks
+// for on a surface of that slope (measured: so the share is that of the surface with a point within
+// two GSD); with half of them it is thin. Either needs neighbours that lie on one surface with it.
+// Threads: any number, the same result.
 void FinishPoints(int num_threads, Ground* ground);
 
 // Height and area of a cell without points, from the predicted surface.
 void PredictCell(const Ground& ground, const GroundLayer& layer, int x, int y, GroundCell* cell);
 
-// Points that a covered cell of this area holds at the least, for a spacing.
-double MinPoints(double area, double spacing);
+// Points that the spacing asks for on an area.
+double WantedPoints(double area, double spacing);
+inline constexpr double kCoveredShare = 0.7, kThinShare = 0.5;
 
 }  // namespace colmap_seapoint
