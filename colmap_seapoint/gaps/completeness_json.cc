@@ -94,12 +94,12 @@ FormerOutline ReadGap(const Json& json) {
 }  // namespace
 
 std::string CompletenessJson(const CompletenessResult& result, const SparseModel& model,
-                             const GapPlaces& places, double tolerance) {
+                             const GapPlaces& places) {
   Json json = {{"version", Version()},
                {"spacing", result.spacing},
                {"unit", places.Unit()},
                {"covered_share", result.coverage[0].share},
-               {"covered_share_tolerance", tolerance < 0 ? Json(nullptr) : Json(tolerance)},
+               {"covered_share_tolerance", result.share_tolerance},
                {"covered_area", result.coverage[0].area},
                {"expected_area", result.expected_area},
                {"gsd", result.gsd},
@@ -131,9 +131,9 @@ std::string CompletenessJson(const CompletenessResult& result, const SparseModel
 std::string CompletenessLine(const CompletenessResult& result, const GapPlaces& places) {
   const std::string unit = places.Unit() == "m" ? "m2" : "square units";
   char text[160];
-  std::snprintf(text, sizeof(text), "%.1f %% of %.4g %s covered, a point every %.3g %s; ",
-                100 * result.coverage[0].share, result.expected_area, unit.c_str(), result.spacing,
-                places.Unit().c_str());
+  std::snprintf(text, sizeof(text), "%.1f +- %.1f %% of %.4g %s covered, a point every %.3g %s; ",
+                100 * result.coverage[0].share, 100 * result.share_tolerance, result.expected_area,
+                unit.c_str(), result.spacing, places.Unit().c_str());
   std::string line = text;
   if (result.gaps.empty()) return line + "no gap to go back to\n";
   double area = 0;

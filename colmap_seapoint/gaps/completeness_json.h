@@ -10,9 +10,8 @@
 
 namespace colmap_seapoint {
 
-// `tolerance`: of the covered share, +-, measured; negative: it was not.
 std::string CompletenessJson(const CompletenessResult& result, const SparseModel& model,
-                             const GapPlaces& places, double tolerance);
+                             const GapPlaces& places);
 
 // One line: the share covered, the area that is missing and why, the gaps.
 std::string CompletenessLine(const CompletenessResult& result, const GapPlaces& places);

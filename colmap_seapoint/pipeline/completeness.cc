@@ -209,7 +209,7 @@ CommandResult RunCompletenessReporter(const CompletenessReporterOptions& options
     WriteTextFile(output / "gaps.geojson", GapsGeoJson(result, model, places));
     WriteTextFile(output / "gaps.csv", GapsCsv(result, model, places));
     WriteMaps(result, places.Unit(), &folder);
-    WriteTextFile(output / "completeness.json", CompletenessJson(result, model, places, -1));
+    WriteTextFile(output / "completeness.json", CompletenessJson(result, model, places));
     answer = CompletenessLine(result, places);
   }
   WriteRunReport(folder.Path() / "run.json", report);

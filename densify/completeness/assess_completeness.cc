@@ -73,7 +73,7 @@ void MeasureCoverage(double covered, CompletenessResult* result) {
 }
 
 void Measure(CompletenessResult* result) {
-  double views = 0, points = 0, covered = 0;
+  double views = 0, points = 0, covered = 0, thin = 0;
   int64_t num_sampled = 0;
   std::vector<double> parallax;
   for (auto& [key, layer] : result->ground.layers) {
@@ -81,6 +81,7 @@ void Measure(CompletenessResult* result) {
       if (!cell.is_expected) return;
       result->expected_area += cell.area;
       if (!cell.is_covered) {
+        thin += cell.is_thin ? cell.area : 0;
         result->missing_area[static_cast<size_t>(cell.cause)] += cell.area;
         return;
       }
@@ -95,6 +96,7 @@ void Measure(CompletenessResult* result) {
   if (num_sampled > 0) result->mean_views = views / static_cast<double>(num_sampled);
   result->median_parallax_deg = MedianOf(std::move(parallax));
   if (covered > 0) result->points_per_area = points / covered;
+  if (result->expected_area > 0) result->share_tolerance = thin / result->expected_area;
   MeasureCoverage(covered, result);
 }
 

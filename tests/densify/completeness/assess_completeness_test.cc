@@ -35,6 +35,7 @@ TEST(AssessCompleteness, FullCloudLeavesTheRimThatOnePictureSees) {
   EXPECT_NEAR(AreaOf(result, GapCause::kImagedOnce), once - twice, 0.05 * once);
   EXPECT_LT(result.missing_area[static_cast<size_t>(GapCause::kViewsDisagree)], 0.005 * once);
   EXPECT_TRUE(result.ground.frame.IsWorld());
+  EXPECT_LT(result.share_tolerance, 0.02);
 }
 
 TEST(AssessCompleteness, HoleThatGoodPicturesSeeIsWhereViewsDisagree) {
@@ -179,6 +180,33 @@ TEST(AssessCompleteness, PicturesKnowTheirCells) {
   EXPECT_GT(first.Share(CellState::kNotCovered), 0.1);
   const auto num_once = std::count(first.causes.begin(), first.causes.end(), GapCause::kImagedOnce);
   EXPECT_GT(num_once, 0);
+}
+
+TEST(AssessCompleteness, ThinnedCloudCoversAtACoarserSpacing) {
+  const SparseModel model = MakeFlatSurvey({2, 6, 1.6, 3.2});
+  // Every ninth point: three times the spacing.
+  CompletenessInput input = FlatInput(model, [](const Eigen::Vector2d& p) {
+    const auto at = [](double x) { return std::lround(x / kFlatGsd + 1e6) % 3 == 0; };
+    return at(p.x()) && at(p.y());
+  });
+  const CompletenessResult result = AssessCompleteness(input, {}, 1);
+  const double twice = AreaSeen(model, 2);
+  EXPECT_LT(result.coverage[0].area, 0.02 * twice);
+  EXPECT_LT(result.coverage[1].area, 0.7 * twice);
+  EXPECT_NEAR(result.coverage[2].area, twice, 0.03 * twice);
+}
+
+TEST(AssessCompleteness, UnsurePointsCoverNothing) {
+  const SparseModel model = MakeFlatSurvey({2, 6, 1.6, 3.2});
+  CompletenessInput input = FlatInput(model, Everywhere);
+  const auto sure = input.for_each_point;
+  input.for_each_point = [&](const auto& take) {
+    sure([&](ConfidentPoint p) {
+      p.confidence = OutsideHole(p.place.xyz.head<2>()) ? 0.9f : 0.4f;
+      take(p);
+    });
+  };
+  EXPECT_NE(GapAt(AssessCompleteness(input, {}, 1), kHole), nullptr);
 }
 
 TEST(AssessCompleteness, CloudOfAnotherModel) {

@@ -79,7 +79,7 @@ TEST_F(GapFiles, Wgs84WhereGeoreferenced) {
 TEST_F(GapFiles, ReportIsReadBack) {
   const GapPlaces places(ModelUnits(), result_.ground.frame);
   const auto path = std::filesystem::path(testing::TempDir()) / "completeness.json";
-  WriteTextFile(path, CompletenessJson(result_, model_, places, -1));
+  WriteTextFile(path, CompletenessJson(result_, model_, places));
   const FormerReport former = ReadFormerReport(path);
   ASSERT_EQ(former.gaps.size(), result_.gaps.size());
   for (size_t i = 0; i < former.gaps.size(); ++i) {
