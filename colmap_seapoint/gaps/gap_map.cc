@@ -6,12 +6,15 @@
 #include <cstdio>
 #include <limits>
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
 namespace colmap_seapoint {
 namespace {
 
 constexpr int kLongerSide = 1600;  // pixels
 constexpr int kLegendHeight = 96;
+// Of so many of the largest gaps the passes and numbers are drawn: more cannot be read.
+constexpr size_t kNumDrawn = 25;
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 
 // Okabe and Ito's colours, red green blue.
@@ -118,23 +121,33 @@ void DrawLegend(const Frame& frame, double cell_side, const std::string& unit, c
               cv::LINE_AA);
 }
 
-void DrawGaps(const CompletenessResult& result, const LayerKey& key, const GroundLayer& layer,
-              const Frame& frame, cv::Mat* map) {
-  const double side = result.ground.cell_side;
+// Of a layer.
+std::vector<const Gap*> LargestGaps(const CompletenessResult& result, const LayerKey& key) {
+  std::vector<const Gap*> gaps;
   for (const Gap& gap : result.gaps) {
-    if (gap.region.layer < key || key < gap.region.layer) continue;
-    for (size_t i = 0; i + 1 < gap.pass.corners.size(); i += 2) {
-      const Eigen::Vector3d a = layer.layer_from_world * gap.pass.corners[i];
-      const Eigen::Vector3d b = layer.layer_from_world * gap.pass.corners[i + 1];
+    if (!(gap.region.layer < key) && !(key < gap.region.layer)) gaps.push_back(&gap);
+  }
+  std::sort(gaps.begin(), gaps.end(), [](const Gap* a, const Gap* b) {
+    return a->region.area != b->region.area ? a->region.area > b->region.area : a->id < b->id;
+  });
+  gaps.resize(std::min(gaps.size(), kNumDrawn));
+  return gaps;
+}
+
+void DrawGaps(const std::vector<const Gap*>& gaps, const GroundLayer& layer, double side,
+              const Frame& frame, cv::Mat* map) {
+  for (const Gap* gap : gaps) {
+    for (size_t i = 0; i + 1 < gap->pass.corners.size(); i += 2) {
+      const Eigen::Vector3d a = layer.layer_from_world * gap->pass.corners[i];
+      const Eigen::Vector3d b = layer.layer_from_world * gap->pass.corners[i + 1];
       cv::line(*map, frame.Place(a.x() / side, a.y() / side),
                frame.Place(b.x() / side, b.y() / side), cv::Scalar(255, 0, 0), 1, cv::LINE_AA);
     }
   }
-  for (const Gap& gap : result.gaps) {
-    if (gap.region.layer < key || key < gap.region.layer) continue;
-    const auto& middle = gap.region.cells[gap.region.cells.size() / 2];
+  for (const Gap* gap : gaps) {
+    const auto& middle = gap->region.cells[gap->region.cells.size() / 2];
     const cv::Point at = frame.Place(middle.first, middle.second);
-    const std::string text = std::to_string(gap.id);
+    const std::string text = std::to_string(gap->id);
     cv::putText(*map, text, at, kFont, 0.5, cv::Scalar(0, 0, 0), 4, cv::LINE_AA);
     cv::putText(*map, text, at, kFont, 0.5, cv::Scalar(255, 255, 255), 1, cv::LINE_AA);
   }
@@ -158,7 +171,7 @@ ColorImage DrawGapMap(const CompletenessResult& result, const LayerKey& key,
       map.at<cv::Vec3b>(b, a) = CellColour(layer, x, y, result.ground.cell_side);
     }
   }
-  DrawGaps(result, key, layer, frame, &map);
+  DrawGaps(LargestGaps(result, key), layer, result.ground.cell_side, frame, &map);
   DrawLegend(frame, result.ground.cell_side, unit, &map);
   return picture;
 }

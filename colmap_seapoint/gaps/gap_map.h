@@ -9,8 +9,8 @@
 namespace colmap_seapoint {
 
 // Grey: covered, shaded by its relief. Colours (safe for the colour-blind): what is missing, by
-// cause. Black: not expected. Lines: the passes, and the numbers of the gaps. Ahead is up. About
-// 1600 pixels along the longer side. Empty image for a layer without cells.
+// cause. Black: not expected. Lines: the passes of the 25 largest gaps, with their numbers. Ahead
+// is up. About 1600 pixels along the longer side. Empty image for a layer without cells.
 ColorImage DrawGapMap(const CompletenessResult& result, const LayerKey& layer,
                       const std::string& unit);
 

@@ -50,6 +50,10 @@ Box FootprintBox(const SurveyView& view, const GroundLayer& layer) {
       box.Take((center + std::min(to_ground, reach) * ray).head<2>());
     }
   }
+  // The ground is not level: half as much again to all sides.
+  const Eigen::Vector2d margin = 0.5 * (box.high - box.low);
+  box.low -= margin;
+  box.high += margin;
   return box;
 }
 
@@ -71,7 +75,7 @@ void SpreadFootprint(const SurveyView& view, Ground* ground, GroundLayer* layer)
   for (int y = tile_of(box.low.y()) - 1; y <= y1; ++y) {
     for (int x = tile_of(box.low.x()) - 1; x <= x1; ++x) {
       if (layer->cells.Holds({x, y})) continue;
-      if (view.MaySee(TileMiddle(*ground, *layer, {x, y}), TileRadius(*ground))) {
+      if (view.MaySee(TileMiddle(*ground, *layer, {x, y}), 2 * TileRadius(*ground))) {
         layer->cells.TileAt({x, y});
       }
     }
