@@ -107,6 +107,12 @@ std::vector<PictureFacts> MeasurePictures(const CompletenessReporterOptions& opt
     LeaveOut(model.images[i].name, problems[i], report);
     facts[i].is_bad = true;
   }
+  if (std::none_of(facts.begin(), facts.end(), [](const auto& f) { return !f.Empty(); })) {
+    throw Error(options.image_path,
+                "none of the model's pictures can be read (" + model.images[0].name + ": " +
+                    problems[0] + ")",
+                "give the --image_path that the model was made from, or none");
+  }
   JudgePictures(&facts);
   return facts;
 }

@@ -17,6 +17,10 @@ constexpr int kSampleCells = 4;
 // A hole on a wall: covered within so many cells in three of four directions, at about its depth.
 constexpr int kHoleReach = 24, kHoleDepth = 12;
 constexpr double kDenseTile = 0.25;
+// Of the survey's spacing: beyond that a place was seen from afar.
+constexpr double kFar = 1.3;
+constexpr double kFewPoints = 5;
+constexpr int kMaxReach = 4;  // cells
 // What blurred pictures alone have measured counts where so many of the 8 cells around are within
 // that many cells' sides in height.
 constexpr int kMinSmooth = 4;
@@ -178,14 +182,25 @@ class TileJudge {
     if (sights.empty()) return;
     Note(sights, cell);
     cell->is_imaged = cell->is_expected = true;
-    const auto gsd = SecondGsd(sights);
-    if (is_top_ && options_.pixels_a_point > 0 && gsd && cell->count > 0 &&
-        cell->count >= kCoveredShare * WantedPoints(cell->area, *gsd * options_.pixels_a_point)) {
+    if (is_top_ && IsCoveredFromAfar(sights, x, y, *cell)) {
       cell->is_covered = true;
       return;
     }
     cell->cause = CauseOf(context_, sights, ground_.PlaceOf(*layer_, x, y, cell->height));
     if (cell->cause == GapCause::kOutOfArea) cell->is_expected = false;
+  }
+  // Whether the surroundings hold what the second nearest good picture can give there.
+  bool IsCoveredFromAfar(const std::vector<Sight>& sights, int x, int y,
+                         const GroundCell& cell) const {
+    const auto gsd = SecondGsd(sights);
+    const double spacing = gsd ? *gsd * options_.pixels_a_point : 0;
+    // What is as near as usual has been asked for its points already.
+    if (kCellSpacings * spacing <= kFar * ground_.cell_side) return false;
+    const double wanted = kCoveredShare * WantedPoints(cell.area, spacing);
+    // As many cells as should hold a few points.
+    const int reach =
+        std::clamp(static_cast<int>(std::sqrt(kFewPoints / wanted) / 2), 1, kMaxReach);
+    return CountAround(*layer_, x, y, reach) >= wanted * (2 * reach + 1) * (2 * reach + 1);
   }
   void RespectArea(int x, int y, GroundCell* cell) const {
     if (options_.asked == nullptr) return;

@@ -127,6 +127,11 @@ TEST_F(CompletenessReporter, FaultsSayWhatToDo) {
   WriteTextFile(area, R"({"type":"Polygon","coordinates":[[[0,0],[1,1],[1,0],[0,1],[0,0]]]})");
   EXPECT_NE(last_line_of(Report({"--area", area.string()})).find("crosses itself"),
             std::string::npos);
+  // Another dive's pictures.
+  fs::create_directories(folder_ / "other");
+  fs::copy_file(folder_ / "images" / "dive_0.png", folder_ / "other" / "other.png");
+  const CliResult other = Report({"--image_path", (folder_ / "other").string()});
+  EXPECT_NE(last_line_of(other).find("none of the model's pictures"), std::string::npos);
   WriteCloud({100, 0});
   EXPECT_NE(last_line_of(Report()).find("of the cloud lie in any picture"), std::string::npos);
   fs::remove(folder_ / "fused.ply");

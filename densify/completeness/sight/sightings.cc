@@ -82,7 +82,8 @@ std::vector<Sight> SightsOf(const SightContext& context, const std::vector<int>&
     sight.image_idx = image_idx;
     const double depth = view.rotation.row(2).dot(place) + view.translation.z();
     sight.kind = KindOf(context, image_idx, *pixel, depth, &sight.texture);
-    sight.gsd = distance / view.camera->MeanFocal();
+    const double cosine = normal.dot(to_camera) / (distance * normal_length);
+    sight.gsd = distance / view.camera->MeanFocal() / std::sqrt(cosine);
     sight.toward = to_camera / distance;
     sights.push_back(sight);
   }

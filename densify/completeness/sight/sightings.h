@@ -18,7 +18,7 @@ struct Sight {
   int image_idx = 0;
   SightKind kind = SightKind::kGood;
   uint8_t texture = 0;     // as in PictureFacts
-  double gsd = 0;          // units a pixel
+  double gsd = 0;          // units a pixel on the surface, mean of both directions
   Eigen::Vector3d toward;  // unit, from the place to the camera
 };
 

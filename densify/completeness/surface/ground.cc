@@ -38,17 +38,6 @@ Eigen::Vector2d SlopeAt(const GroundLayer& layer, int x, int y, double side) {
   return slope;
 }
 
-int CountAround(const GroundLayer& layer, int x, int y) {
-  int count = 0;
-  for (int dy = -1; dy <= 1; ++dy) {
-    for (int dx = -1; dx <= 1; ++dx) {
-      const GroundCell* cell = layer.cells.Find(x + dx, y + dy);
-      if (cell != nullptr) count += cell->count;
-    }
-  }
-  return count;
-}
-
 // Whether a cell lies on one surface with its neighbours: what was matched by chance, of what moved
 // or shows nothing, lies anywhere.
 bool IsCoherent(const GroundLayer& layer, int x, int y, const GroundCell& cell, double side) {
@@ -76,7 +65,7 @@ void FinishTile(const TileKey& key, double side, GroundLayer* layer) {
     const int x = key.x * kSide + i % kSide, y = key.y * kSide + i / kSide;
     cell.area = static_cast<float>(AreaOf(SlopeAt(*layer, x, y, side), side));
     const double wanted = WantedPoints(cell.area, spacing);
-    const double share = std::max(cell.count / wanted, CountAround(*layer, x, y) / (9 * wanted));
+    const double share = std::max(cell.count / wanted, CountAround(*layer, x, y, 1) / (9 * wanted));
     const bool is_coherent = IsCoherent(*layer, x, y, cell, side);
     cell.is_covered = is_coherent && share >= kCoveredShare;
     cell.is_thin = is_coherent && !cell.is_covered && share >= kThinShare;
@@ -85,6 +74,17 @@ void FinishTile(const TileKey& key, double side, GroundLayer* layer) {
 }
 
 }  // namespace
+
+int CountAround(const GroundLayer& layer, int x, int y, int reach) {
+  int count = 0;
+  for (int dy = -reach; dy <= reach; ++dy) {
+    for (int dx = -reach; dx <= reach; ++dx) {
+      const GroundCell* cell = layer.cells.Find(x + dx, y + dy);
+      if (cell != nullptr) count += cell->count;
+    }
+  }
+  return count;
+}
 
 double WantedPoints(double area, double spacing) { return area / (spacing * spacing); }
 

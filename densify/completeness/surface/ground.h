@@ -82,6 +82,9 @@ void FinishPoints(int num_threads, Ground* ground);
 // Height and area of a cell without points, from the predicted surface.
 void PredictCell(const Ground& ground, const GroundLayer& layer, int x, int y, GroundCell* cell);
 
+// Points of the (2 reach + 1)^2 cells around one.
+int CountAround(const GroundLayer& layer, int x, int y, int reach);
+
 // Points that the spacing asks for on an area.
 double WantedPoints(double area, double spacing);
 inline constexpr double kCoveredShare = 0.7, kThinShare = 0.5;
