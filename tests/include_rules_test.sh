@@ -14,6 +14,7 @@ colmap_seapoint/io/navigation   colmap_seapoint/base colmap_seapoint/io/files
 colmap_seapoint/io/outputs      colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files
 colmap_seapoint/io/image        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files
 colmap_seapoint/io/video        colmap_seapoint/base colmap_seapoint/io/files
+colmap_seapoint/io/gis          colmap_seapoint/base colmap_seapoint/io/files
 colmap_seapoint/io/pdf          colmap_seapoint/base colmap_seapoint/io/files
 colmap_seapoint/io/cloud        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files
 colmap_seapoint/io/raster       colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files colmap_seapoint/io/image
@@ -32,6 +33,10 @@ densify/overlap                 colmap_seapoint/base densify/match
 densify/cloud                   colmap_seapoint/base densify/match densify/overlap
 densify/sequence                colmap_seapoint/base densify/match densify/overlap densify/cloud
 densify/maps                    colmap_seapoint/base densify/match densify/cloud
+densify/completeness/surface    colmap_seapoint/base
+densify/completeness/sight      colmap_seapoint/base densify/completeness/surface
+densify/completeness/gaps       colmap_seapoint/base densify/completeness/surface
+densify/completeness            colmap_seapoint/base densify/match densify/completeness/*
 densify                         colmap_seapoint/base densify/*
 colmap_seapoint/estimate        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files
 colmap_seapoint/markers         colmap_seapoint/base
@@ -56,9 +61,10 @@ colmap_seapoint/pairing         colmap_seapoint/base colmap_seapoint/io/* featur
 colmap_seapoint/remeasuring     colmap_seapoint/base feature/remeasuring
 colmap_seapoint/report          colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/compare colmap_seapoint/georeference densify densify/*
 colmap_seapoint/water           colmap_seapoint/base
+colmap_seapoint/gaps            colmap_seapoint/base colmap_seapoint/io/files densify/completeness densify/completeness/*
 colmap_seapoint/workspace       colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/pictures
 colmap_seapoint/pipeline/intake colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/pictures colmap_seapoint/frames colmap_seapoint/workspace
-colmap_seapoint/pipeline        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/compare colmap_seapoint/estimate colmap_seapoint/georeference colmap_seapoint/navigation colmap_seapoint/mapping colmap_seapoint/cameras colmap_seapoint/pictures colmap_seapoint/frames colmap_seapoint/pairing colmap_seapoint/report colmap_seapoint/workspace colmap_seapoint/pipeline/intake feature feature/* densify densify/*
+colmap_seapoint/pipeline        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/compare colmap_seapoint/estimate colmap_seapoint/georeference colmap_seapoint/navigation colmap_seapoint/mapping colmap_seapoint/cameras colmap_seapoint/pictures colmap_seapoint/frames colmap_seapoint/pairing colmap_seapoint/report colmap_seapoint/gaps colmap_seapoint/workspace colmap_seapoint/pipeline/intake feature feature/* densify densify/*
 colmap_seapoint/pipeline/markers colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/pictures colmap_seapoint/report colmap_seapoint/workspace
 colmap_seapoint/rendering       colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/workspace
 colmap_seapoint/cli             colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files colmap_seapoint/pipeline colmap_seapoint/pipeline/markers colmap_seapoint/rendering

@@ -9,6 +9,19 @@ constexpr double kEquatorRadius = 6378137.0;  // WGS84
 constexpr double kEccentricity2 = 6.69437999014e-3;
 constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
 
+// Metres a radian of longitude and of latitude.
+struct Radii {
+  double east, north;
+};
+
+Radii RadiiAt(double latitude_deg) {
+  const double latitude = latitude_deg * kRadiansPerDegree;
+  const double w2 = 1 - kEccentricity2 * std::sin(latitude) * std::sin(latitude);
+  const double across = kEquatorRadius / std::sqrt(w2);  // prime vertical
+  const double along = kEquatorRadius * (1 - kEccentricity2) / (w2 * std::sqrt(w2));  // meridian
+  return {across * std::cos(latitude), along};
+}
+
 }  // namespace
 
 bool IsLegal(const GeoPosition& position) {
@@ -17,14 +30,18 @@ bool IsLegal(const GeoPosition& position) {
 }
 
 Eigen::Vector3d LocalEastNorthUp(const GeoPosition& position, const GeoPosition& origin) {
-  const double latitude = origin.latitude_deg * kRadiansPerDegree;
-  const double w2 = 1 - kEccentricity2 * std::sin(latitude) * std::sin(latitude);
-  const double across = kEquatorRadius / std::sqrt(w2);  // prime vertical
-  const double along = kEquatorRadius * (1 - kEccentricity2) / (w2 * std::sqrt(w2));  // meridian
+  const Radii radii = RadiiAt(origin.latitude_deg);
   const double east_deg = std::remainder(position.longitude_deg - origin.longitude_deg, 360.0);
   const double north_deg = position.latitude_deg - origin.latitude_deg;
-  return {east_deg * kRadiansPerDegree * across * std::cos(latitude),
-          north_deg * kRadiansPerDegree * along, position.altitude_m - origin.altitude_m};
+  return {east_deg * kRadiansPerDegree * radii.east, north_deg * kRadiansPerDegree * radii.north,
+          position.altitude_m - origin.altitude_m};
+}
+
+GeoPosition FromLocalEastNorthUp(const Eigen::Vector3d& east_north_up, const GeoPosition& origin) {
+  const Radii radii = RadiiAt(origin.latitude_deg);
+  return {origin.latitude_deg + east_north_up.y() / (kRadiansPerDegree * radii.north),
+          origin.longitude_deg + east_north_up.x() / (kRadiansPerDegree * radii.east),
+          origin.altitude_m + east_north_up.z()};
 }
 
 }  // namespace colmap_seapoint

@@ -19,4 +19,7 @@ bool IsLegal(const GeoPosition& position);
 // thousandth up to 60 degrees of latitude. Across the date line, too.
 Eigen::Vector3d LocalEastNorthUp(const GeoPosition& position, const GeoPosition& origin);
 
+// The reverse.
+GeoPosition FromLocalEastNorthUp(const Eigen::Vector3d& east_north_up, const GeoPosition& origin);
+
 }  // namespace colmap_seapoint

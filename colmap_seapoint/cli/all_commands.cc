@@ -1,6 +1,7 @@
 #include "colmap_seapoint/cli/command.h"
 #include "colmap_seapoint/pipeline/cloud_exporter.h"
 #include "colmap_seapoint/pipeline/compare.h"
+#include "colmap_seapoint/pipeline/completeness.h"
 #include "colmap_seapoint/pipeline/densify.h"
 #include "colmap_seapoint/pipeline/extract.h"
 #include "colmap_seapoint/pipeline/markers/marker_finder.h"
@@ -34,6 +35,9 @@ std::vector<Command> AllCommands() {
                   RunCloudComparer),
       MakeCommand("cloud_exporter", "a cloud -> LAS or LAZ, where it lies on the Earth",
                   RunCloudExporter),
+      MakeCommand("completeness_reporter",
+                  "what a cloud covers, what is missing, why, and a route that closes it",
+                  RunCompletenessReporter),
       MakeCommand("render_cloud", "a cloud -> a picture of it, from above or as a camera saw it",
                   RunCloudRenderer),
       MakeCommand("automatic_reconstructor", "a folder of pictures -> dense clouds, all in one",

@@ -40,16 +40,16 @@ endif()
 set(exported_targets
   seapoint_flags seapoint_simd seapoint_base seapoint_system
   seapoint_files seapoint_nav_files seapoint_outputs seapoint_image seapoint_video seapoint_cloud
-  seapoint_las seapoint_colmap seapoint_pdf seapoint_raster seapoint_water seapoint_io
+  seapoint_las seapoint_colmap seapoint_pdf seapoint_gis seapoint_raster seapoint_water seapoint_io
   seapoint_feature_kernels seapoint_feature_detector seapoint_feature_descriptor
   seapoint_feature_matching seapoint_feature_retrieval seapoint_feature_remeasuring seapoint_feature
   seapoint_densify_kernels seapoint_densify_match seapoint_densify_overlap seapoint_densify_cloud
-  seapoint_densify_sequence seapoint_densify_maps seapoint_densify
+  seapoint_densify_sequence seapoint_densify_maps seapoint_densify_completeness seapoint_densify
   seapoint_estimate seapoint_markers seapoint_georeference seapoint_navigation seapoint_compare
   seapoint_map_ground seapoint_map_relief seapoint_map_sources seapoint_orthomosaic
   seapoint_tracks seapoint_adjustment seapoint_lens seapoint_reposing seapoint_remeasuring
   seapoint_mapping seapoint_cameras seapoint_pictures seapoint_frames seapoint_joining seapoint_pairing
-  seapoint_workspace seapoint_intake seapoint_report seapoint_pipeline)
+  seapoint_workspace seapoint_gaps seapoint_intake seapoint_report seapoint_pipeline)
 foreach(target IN LISTS exported_targets)
   string(REPLACE seapoint_ "" name ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})

@@ -92,4 +92,15 @@ std::string WellKnownText(const std::string& crs, const std::string& file) {
               "give one as EPSG:32755, or none");
 }
 
+GeoPosition MapProjection::ToGeographic(const Eigen::Vector3d& position) const {
+  const PJ_COORD from = proj_coord(position.x(), position.y(), 0, HUGE_VAL);
+  const PJ_COORD to = proj_trans(impl_->transformation.get(), PJ_INV, from);
+  const GeoPosition result = {to.xyz.y, to.xyz.x, position.z()};
+  if (IsLegal(result)) return result;
+  throw Error("--crs " + crs_,
+              "does not hold easting " + std::to_string(position.x()) + ", northing " +
+                  std::to_string(position.y()),
+              "check the offset in units.json");
+}
+
 }  // namespace colmap_seapoint

@@ -22,6 +22,9 @@ class MapProjection {
   // Error where the system does not reach.
   Eigen::Vector3d FromGeographic(const GeoPosition& position) const;
 
+  // The reverse.
+  GeoPosition ToGeographic(const Eigen::Vector3d& position) const;
+
   const std::string& Name() const { return name_; }  // "WGS 84 / UTM zone 55S"
 
  private:

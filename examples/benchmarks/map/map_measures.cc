@@ -139,7 +139,9 @@ bool IsSeenNear(const SurveyTruth& truth, const SurfaceVisibility& visibility, c
                 int x, int y) {
   for (const int i : {4, 0, 1, 2, 3, 5, 6, 7, 8}) {
     const auto hit = TrueSurface(truth, map, x + 0.5 + i % 3 - 1, y + 0.5 + i / 3 - 1);
-    if (hit && visibility.Sightings(hit->xyz, hit->normal).size() >= 2) return true;
+    if (!hit) continue;
+    const std::vector<size_t> pictures = visibility.PicturesAround({hit->xyz});
+    if (visibility.Sightings(hit->xyz, hit->normal, pictures).size() >= 2) return true;
   }
   return false;
 }

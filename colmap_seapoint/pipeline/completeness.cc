@@ -1,0 +1,227 @@
+#include "colmap_seapoint/pipeline/completeness.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <mutex>
+#include <set>
+#include <vector>
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/parallel.h"
+#include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/gaps/completeness_json.h"
+#include "colmap_seapoint/gaps/gap_files.h"
+#include "colmap_seapoint/gaps/gap_map.h"
+#include "colmap_seapoint/io/cloud/ply_reader.h"
+#include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/files/model_units.h"
+#include "colmap_seapoint/io/files/run_report.h"
+#include "colmap_seapoint/io/gis/area_geojson.h"
+#include "colmap_seapoint/io/image/image_file.h"
+#include "colmap_seapoint/io/image/picture_masks.h"
+#include "colmap_seapoint/io/outputs/output_folder.h"
+#include "colmap_seapoint/pictures/picture_scale.h"
+#include "colmap_seapoint/workspace/output_paths.h"
+#include "densify/completeness/assess_completeness.h"
+
+namespace colmap_seapoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+void Validate(const CompletenessReporterOptions& options) {
+  CheckOutputPaths(options);
+  if (!options.image_path.empty() && !fs::is_directory(options.image_path)) {
+    throw Error(options.image_path, "there is no such folder", "check --image_path");
+  }
+}
+
+SparseModel ReadModel(const CompletenessReporterOptions& options) {
+  SparseModel model = ReadSparseModel(options.input_path, ModelContent::kPosesAndPoints);
+  if (model.images.empty()) {
+    throw Error(options.input_path, "the model holds no pictures",
+                "give a model of COLMAP's mapper");
+  }
+  if (!options.image_path.empty()) {
+    ScaleCamerasToPictures(options.image_path, options.run.num_threads, &model);
+  }
+  return model;
+}
+
+AskedArea ReadArea(const CompletenessReporterOptions& options, const ModelUnits& units) {
+  AskedArea area;
+  if (options.area.empty()) return area;
+  for (const auto& corners : ReadAreaGeoJson(options.area, "--area")) {
+    Ring& ring = area.rings.emplace_back();
+    for (const Eigen::Vector2d& corner : corners) ring.push_back(AreaCorner(units, corner));
+    if (!CrossesItself(ring)) continue;
+    throw Error("--area " + options.area, "a polygon crosses itself",
+                "mend it (in QGIS: Fix geometries)");
+  }
+  return area;
+}
+
+// Names of pictures below image_path that are in no model.
+std::vector<std::string> LostPictures(const CompletenessReporterOptions& options,
+                                      const SparseModel& model) {
+  if (options.image_path.empty()) return {};
+  std::set<std::string> registered;
+  for (const PosedImage& image : model.images) registered.insert(image.name);
+  std::vector<std::string> lost;
+  for (const std::string& name : ListImages(options.image_path)) {
+    if (IsSafeImageName(name) && registered.count(name) == 0) lost.push_back(name);
+  }
+  return lost;
+}
+
+PictureFacts ReadFacts(const CompletenessReporterOptions& options, const PictureMasks& masks,
+                       const std::string& name) {
+  const GrayImage luma = ReadGrayImage(fs::path(options.image_path) / name);
+  return MeasurePicture(luma, masks.Decode(name, masks.Open(name), luma.width, luma.height));
+}
+
+// By image_idx. A picture that cannot be read is named, and counts as a bad one.
+std::vector<PictureFacts> MeasurePictures(const CompletenessReporterOptions& options,
+                                          const SparseModel& model, RunReport* report) {
+  std::vector<PictureFacts> facts(model.images.size());
+  if (options.image_path.empty()) return facts;
+  const PictureMasks masks(options.mask_path);
+  std::vector<std::string> problems(model.images.size());
+  Progress progress("Looking at the pictures", static_cast<int64_t>(facts.size()));
+  std::mutex mutex;
+  int64_t num_done = 0;
+  ParallelFor(options.run.num_threads, static_cast<int64_t>(facts.size()), [&](int64_t index) {
+    const auto i = static_cast<size_t>(index);
+    try {
+      facts[i] = ReadFacts(options, masks, model.images[i].name);
+    } catch (const Error& e) {
+      problems[i] = e.Finding();
+    }
+    const std::lock_guard<std::mutex> lock(mutex);
+    progress.Update(++num_done);
+  });
+  progress.Finish();
+  for (size_t i = 0; i < problems.size(); ++i) {
+    if (problems[i].empty()) continue;
+    LeaveOut(model.images[i].name, problems[i], report);
+    facts[i].is_bad = true;
+  }
+  if (std::none_of(facts.begin(), facts.end(), [](const auto& f) { return !f.Empty(); })) {
+    throw Error(options.image_path,
+                "none of the model's pictures can be read (" + model.images[0].name + ": " +
+                    problems[0] + ")",
+                "give the --image_path that the model was made from, or none");
+  }
+  JudgePictures(&facts);
+  return facts;
+}
+
+void ReadPoints(const std::string& path, const std::function<void(const ConfidentPoint&)>& take) {
+  CloudReader reader(path);
+  CloudVertex vertex;
+  while (reader.Next(&vertex)) {
+    take({{vertex.xyz, vertex.normal.cast<double>()}, vertex.confidence});
+  }
+}
+
+CompletenessResult Assess(const CompletenessReporterOptions& options, const SparseModel& model,
+                          const ModelUnits& units, RunReport* report) {
+  CompletenessInput input;
+  input.model = &model;
+  input.num_points = CloudReader(options.cloud_path).NumPoints();
+  if (input.num_points == 0) {
+    throw Error(options.cloud_path, "the cloud holds no points", "check --cloud_path");
+  }
+  report->points = static_cast<int64_t>(input.num_points);
+  input.for_each_point = [&](const auto& take) { ReadPoints(options.cloud_path, take); };
+  input.asked = ReadArea(options, units);
+  input.lost = LostPictures(options, model);
+  FormerReport former = ReadFormerReport(fs::path(options.output_path) / "completeness.json");
+  input.former = std::move(former.gaps);
+  input.last_id = former.last_id;
+  input.facts = MeasurePictures(options, model, report);
+  CompletenessResult result =
+      AssessCompleteness(input, options.completeness, options.run.num_threads);
+  if (result.belonging_share >= kMinBelonging) return result;
+  throw Error(options.cloud_path,
+              "only " + std::to_string(std::lround(100 * result.belonging_share)) +
+                  " % of the cloud lie in any picture of " + options.input_path,
+              "give the cloud that was made from this model (of a scaled model, the scaled cloud)");
+}
+
+// Of the layers with gaps, but for the top, which is always drawn.
+std::set<LayerKey> LayersWithGaps(const CompletenessResult& result) {
+  std::set<LayerKey> layers;
+  for (const Gap& gap : result.gaps) layers.insert(gap.region.layer);
+  layers.erase({Side::kTop, 0});
+  return layers;
+}
+
+std::string MapName(const LayerKey& layer) {
+  std::string name = "map_" + LayerName(layer) + ".png";
+  std::replace(name.begin(), name.end(), ':', '_');
+  return name;
+}
+
+void WriteMaps(const CompletenessResult& result, const std::string& unit, OutputFolder* folder) {
+  const ColorImage map = DrawGapMap(result, {Side::kTop, 0}, unit);
+  if (!map.Empty()) WriteImage(folder->Path() / "map.png", map);
+  for (const LayerKey& layer : LayersWithGaps(result)) {
+    folder->Claim({MapName(layer)});
+    WriteImage(folder->Path() / MapName(layer), DrawGapMap(result, layer, unit));
+  }
+}
+
+}  // namespace
+
+void CompletenessReporterOptions::Bind(OptionTable* table) {
+  table->AddRequired("input_path", &input_path, "COLMAP model, binary or text");
+  table->AddRequired("cloud_path", &cloud_path, "cloud in the model's frame, PLY");
+  table->AddRequired("output_path", &output_path,
+                     "folder for completeness.json, gaps.geojson, gaps.csv, maps and run.json");
+  table->Add("image_path", &image_path,
+             "folder of the pictures, also of those that are in no model; empty = nothing is known "
+             "of texture, blur and lost pictures",
+             "ours");
+  table->Add("mask_path", &mask_path,
+             "folder of masks <image name>.png, 0 where nothing was asked for; empty = none",
+             "COLMAP (there StereoFusion.mask_path)");
+  table->Add("area", &area,
+             "GeoJSON with the polygons that were to be covered, in WGS84 where the model is "
+             "georeferenced, else in its x and y; empty = all that pictures outline",
+             "ours");
+  completeness.Bind(table);
+  run.Bind(table);
+  table->MarkOutput("output_path");
+}
+
+CommandResult RunCompletenessReporter(const CompletenessReporterOptions& options) {
+  Validate(options);
+  RunReport report = StartReport("completeness_reporter", options, options.run);
+  OutputFolder folder(options.output_path, "--output_path");
+  folder.Claim({"completeness.json", "gaps.geojson", "gaps.csv", "map.png", "run.json"});
+  std::string answer;
+  {
+    const StageTimer timer(&report, "completeness_reporter");
+    const ModelUnits units = ReadModelUnits(options.input_path).value_or(ModelUnits());
+    report.units = UnitsWord(units);
+    const SparseModel model = ReadModel(options);
+    report.images_in = static_cast<int64_t>(model.images.size());
+    const CompletenessResult result = Assess(options, model, units, &report);
+    report.images_used = report.images_in - static_cast<int64_t>(report.left_out.size());
+    const GapPlaces places(units, result.ground.frame);
+    const fs::path& output = folder.Path();
+    WriteTextFile(output / "gaps.geojson", GapsGeoJson(result, model, places));
+    WriteTextFile(output / "gaps.csv", GapsCsv(result, model, places));
+    WriteMaps(result, places.Unit(), &folder);
+    WriteTextFile(output / "completeness.json", CompletenessJson(result, model, places));
+    answer = CompletenessLine(result, places);
+  }
+  WriteRunReport(folder.Path() / "run.json", report);
+  CommandResult command = ResultOf(report);
+  command.text = answer;
+  return command;
+}
+
+}  // namespace colmap_seapoint

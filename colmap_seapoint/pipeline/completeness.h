@@ -1,0 +1,31 @@
+// completeness_reporter: model + pictures + cloud -> what is covered, what is missing, why, and a
+// way to close it.
+#pragma once
+
+#include <string>
+
+#include "colmap_seapoint/base/options.h"
+#include "colmap_seapoint/base/run_options.h"
+#include "densify/completeness/completeness_options.h"
+
+namespace colmap_seapoint {
+
+struct CompletenessReporterOptions {
+  std::string image_path;   // folder of the pictures; empty: nothing is known of texture and blur
+  std::string input_path;   // COLMAP model, binary or text
+  std::string cloud_path;   // PLY in the model's frame
+  std::string output_path;  // folder
+  std::string mask_path;    // folder of COLMAP's masks; empty = none
+  std::string area;         // GeoJSON of what was asked for; empty = the outline of what was imaged
+  CompletenessOptions completeness;
+  RunOptions run;
+
+  void Bind(OptionTable* table);
+};
+
+// Writes completeness.json, gaps.geojson, gaps.csv, map.png (map_<layer>.png of other layers with
+// gaps) and run.json; the answer in one line on stdout. Incomplete when pictures of the model
+// cannot be read.
+CommandResult RunCompletenessReporter(const CompletenessReporterOptions& options);
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,100 @@
+// "Did we cover it all, and where must we go back?" (ours; what the paper's clouds are made for.)
+//
+// From any COLMAP model, any cloud in its frame, and what was measured in the pictures:
+//   1. the cloud becomes cells of the surface (ground.h), and is drawn into every picture with a
+//   depth
+//      buffer (survey_views.h): what is covered;
+//   2. every cell that is not covered is looked at from all pictures (sightings.h): which of them
+//   see
+//      it, hidden or not, sharp or not, from how many sides; so why it is missing (judge_ground.h);
+//   3. what nobody imaged inside the survey's outline is added (outline.h), and the causes go back
+//   into
+//      the pictures' own cells (picture_records.h);
+//   4. missing cells become gaps with a pass that closes each (gap_regions.h, closing_pass.h).
+// Nothing is interpolated: the predicted surface only says where a gap is drawn.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "densify/completeness/completeness_options.h"
+#include "densify/completeness/gaps/closing_pass.h"
+#include "densify/completeness/gaps/gap_ids.h"
+#include "densify/completeness/picture_records.h"
+
+namespace colmap_seapoint {
+
+struct ConfidentPoint {
+  SurfacePoint place;
+  float confidence = 1;
+};
+
+// A gap of an earlier report on the same frame.
+struct FormerOutline {
+  int id = 0;
+  LayerKey layer;
+  std::vector<std::vector<Eigen::Vector3d>> rings;  // world
+};
+
+struct CompletenessInput {
+  const SparseModel* model = nullptr;  // with points and their ids by image (ModelContent)
+  // Calls its argument for every point of the cloud, in order. Called twice.
+  std::function<void(const std::function<void(const ConfidentPoint&)>&)> for_each_point;
+  uint64_t num_points = 0;
+  std::vector<PictureFacts> facts;    // by image_idx; Empty(): nobody has looked at it
+  std::vector<std::string> lost;      // names of pictures that are in no model
+  AskedArea asked;                    // in the map's plan; Empty(): the outline of what was imaged
+  std::vector<FormerOutline> former;  // gaps of the report before, for their ids
+  int last_id = 0;                    // the largest id ever given
+};
+
+struct Gap {
+  int id = 0;
+  GapRegion region;
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  // world
+  std::vector<std::vector<Eigen::Vector3d>> outline;   // region.rings, world, on the surface
+  std::vector<int> pictures;                           // image_idx, nearest first, up to 5
+  ClosingPass pass;
+  double AreaPerLength() const { return region.area / pass.length; }
+};
+
+// What as many points as a spacing asks for cover (ground.h).
+struct CoverageAt {
+  double spacing = 0;  // units
+  double area = 0;     // units^2, of what is expected
+  double share = 0;    // of the expected area
+};
+
+struct CompletenessResult {
+  // Of the sample of the cloud that is in a picture: small when cloud and model do not belong
+  // together. Below kMinBelonging nothing else is filled.
+  double belonging_share = 0;
+  double gsd = 0;                      // units a pixel: median of the better pair's
+  double spacing = 0;                  // units
+  double expected_area = 0;            // units^2, along the surface
+  std::array<CoverageAt, 3> coverage;  // at the spacing, at 2 and at 4 times it
+  // Of the share at the wanted spacing, +-: what is thin (ground.h), which another threshold would
+  // have judged otherwise.
+  double share_tolerance = 0;
+  std::array<double, kNumGapCauses> missing_area = {};  // by cause; all cells, also of small gaps
+  double mean_views = 0, median_parallax_deg = 0;       // of covered cells
+  double points_per_area = 0;                           // units^-2, of covered cells
+  Ground ground;
+  std::vector<PictureRecord> records;  // by image_idx
+  std::vector<LostRun> lost_runs;
+  std::vector<Gap> gaps;         // ranked: most area for a unit of length first
+  std::vector<RouteStop> route;  // over `gaps`
+  int last_id = 0;               // the largest that was ever given
+  double route_length = 0;       // passes and ways between, units
+};
+inline constexpr double kMinBelonging = 0.5;
+
+// The same for any number of threads. Memory: 24 bytes a cell of the ground, 4 a depth cell of
+// every picture; the cloud is streamed.
+CompletenessResult AssessCompleteness(const CompletenessInput& input,
+                                      const CompletenessOptions& options, int num_threads);
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,244 @@
+#include "densify/completeness/judge_ground.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "colmap_seapoint/base/parallel.h"
+
+namespace colmap_seapoint {
+namespace {
+
+constexpr int kSide = TiledGrid<GroundCell>::kSide;
+// Without a limit of sight, pictures that look towards the horizon are cut off at that many
+// heights.
+constexpr double kMaxHeights = 8;
+// Views and parallax of covered cells are looked at on every fourth cell both ways.
+constexpr int kSampleCells = 4;
+// A hole on a wall: covered within so many cells in three of four directions, at about its depth.
+constexpr int kHoleReach = 24, kHoleDepth = 12;
+constexpr double kDenseTile = 0.25;
+// Of the survey's spacing: beyond that a place was seen from afar.
+constexpr double kFar = 1.3;
+constexpr double kFewPoints = 5;
+constexpr int kMaxReach = 4;  // cells
+// What blurred pictures alone have measured counts where so many of the 8 cells around are within
+// that many cells' sides in height.
+constexpr int kMinSmooth = 4;
+constexpr double kSmoothStep = 0.5;
+
+struct Box {
+  Eigen::Vector2d low, high;
+  void Take(const Eigen::Vector2d& place) {
+    low = low.cwiseMin(place);
+    high = high.cwiseMax(place);
+  }
+};
+
+// What a view may show of a level ground at the height of what is below it, in the layer's plan.
+Box FootprintBox(const SurveyView& view, const GroundLayer& layer) {
+  const Eigen::Vector3d center = layer.layer_from_world * view.center;
+  const double above = center.z() - layer.surface.At(center.x(), center.y()).height;
+  const double reach =
+      std::isfinite(view.max_range) ? view.max_range : kMaxHeights * std::abs(above);
+  Box box{center.head<2>(), center.head<2>()};
+  constexpr int kRays = 6;
+  for (int b = 0; b <= kRays; ++b) {
+    for (int a = 0; a <= kRays; ++a) {
+      const auto on_plane = view.camera->CamFromImg(
+          {a * view.camera->width / double{kRays}, b * view.camera->height / double{kRays}});
+      const Eigen::Vector3d in_cam =
+          on_plane ? Eigen::Vector3d(on_plane->x(), on_plane->y(), 1) : Eigen::Vector3d(0, 0, 1);
+      const Eigen::Vector3d ray =
+          layer.layer_from_world * (view.rotation.transpose() * in_cam.normalized());
+      const double to_ground = ray.z() < 0 && above > 0 ? above / -ray.z() : reach;
+      box.Take((center + std::min(to_ground, reach) * ray).head<2>());
+    }
+  }
+  // The ground is not level: half as much again to all sides.
+  const Eigen::Vector2d margin = 0.5 * (box.high - box.low);
+  box.low -= margin;
+  box.high += margin;
+  return box;
+}
+
+double TileRadius(const Ground& ground) { return 0.75 * kSide * ground.cell_side; }
+
+Eigen::Vector3d TileMiddle(const Ground& ground, const GroundLayer& layer, const TileKey& key) {
+  const double side = kSide * ground.cell_side;
+  const double u = (key.x + 0.5) * side, v = (key.y + 0.5) * side;
+  return layer.layer_from_world.transpose() * Eigen::Vector3d(u, v, layer.surface.At(u, v).height);
+}
+
+void SpreadFootprint(const SurveyView& view, Ground* ground, GroundLayer* layer) {
+  const Box box = FootprintBox(view, *layer);
+  const double side = kSide * ground->cell_side;
+  const auto tile_of = [&](double at) {
+    return static_cast<int>(std::clamp(std::floor(at / side), -1e8, 1e8));
+  };
+  const int x1 = tile_of(box.high.x()) + 1, y1 = tile_of(box.high.y()) + 1;
+  for (int y = tile_of(box.low.y()) - 1; y <= y1; ++y) {
+    for (int x = tile_of(box.low.x()) - 1; x <= x1; ++x) {
+      if (layer->cells.Holds({x, y})) continue;
+      if (view.MaySee(TileMiddle(*ground, *layer, {x, y}), 2 * TileRadius(*ground))) {
+        layer->cells.TileAt({x, y});
+      }
+    }
+  }
+}
+
+double CoveredShare(const TiledGrid<GroundCell>::Tile& tile) {
+  const auto count = std::count_if(tile.begin(), tile.end(),
+                                   [](const GroundCell& cell) { return cell.is_covered; });
+  return static_cast<double>(count) / static_cast<double>(tile.size());
+}
+
+// Of a layer that is not the top: whether covered cells enclose this one.
+bool IsHole(const GroundLayer& layer, int x, int y, double height, double cell_side) {
+  constexpr int kStep[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+  int num_sides = 0;
+  for (const auto& step : kStep) {
+    for (int k = 1; k <= kHoleReach; ++k) {
+      const GroundCell* cell = layer.cells.Find(x + k * step[0], y + k * step[1]);
+      if (cell == nullptr || !cell->is_covered) continue;
+      num_sides += std::abs(cell->height - height) < kHoleDepth * cell_side ? 1 : 0;
+      break;
+    }
+  }
+  return num_sides >= 3;
+}
+
+// Judges the cells of one tile.
+class TileJudge {
+ public:
+  TileJudge(const SightContext& context, const JudgeOptions& options, const Ground& ground,
+            bool is_top, GroundLayer* layer)
+      : context_(context), options_(options), ground_(ground), is_top_(is_top), layer_(layer) {}
+
+  void Judge(const TileKey& key) const {
+    TiledGrid<GroundCell>::Tile& tile = layer_->cells.ExistingTile(key);
+    if (!is_top_ && CoveredShare(tile) < kDenseTile) return;
+    const std::vector<int> candidates = CandidatesOf(key);
+    const bool has_bad = HasBad(candidates);
+    for (int i = 0; i < kSide * kSide; ++i) {
+      const int x = key.x * kSide + i % kSide, y = key.y * kSide + i / kSide;
+      GroundCell& cell = tile[static_cast<size_t>(i)];
+      if (!cell.is_covered) {
+        JudgeCell(candidates, x, y, &cell);
+      } else if (has_bad || (x % kSampleCells == 0 && y % kSampleCells == 0)) {
+        JudgeCovered(SightsAt(candidates, x, y, cell), x, y, &cell);
+      }
+      RespectArea(x, y, &cell);
+    }
+  }
+
+ private:
+  std::vector<int> CandidatesOf(const TileKey& key) const {
+    const Eigen::Vector3d middle = TileMiddle(ground_, *layer_, key);
+    // Rough ground leaves its plane.
+    const double radius = 2 * TileRadius(ground_);
+    std::vector<int> candidates;
+    for (size_t i = 0; i < context_.views->size(); ++i) {
+      if ((*context_.views)[i].MaySee(middle, radius)) candidates.push_back(static_cast<int>(i));
+    }
+    return candidates;
+  }
+  // Whether most neighbours lie at the same height, to what a spacing is worth.
+  bool IsSmooth(int x, int y, const GroundCell& cell) const {
+    int num_agreeing = 0;
+    for (int k = 0; k < 9; ++k) {
+      const GroundCell* next = layer_->cells.Find(x + k % 3 - 1, y + k / 3 - 1);
+      if (k == 4 || next == nullptr || next->count == 0) continue;
+      const double step = std::abs(next->height - cell.height);
+      num_agreeing += step <= kSmoothStep * ground_.cell_side ? 1 : 0;
+    }
+    return num_agreeing >= kMinSmooth;
+  }
+  bool HasBad(const std::vector<int>& candidates) const {
+    return std::any_of(candidates.begin(), candidates.end(),
+                       [&](int i) { return (*context_.facts)[static_cast<size_t>(i)].is_bad; });
+  }
+  std::vector<Sight> SightsAt(const std::vector<int>& candidates, int x, int y,
+                              const GroundCell& cell) const {
+    const double side = ground_.cell_side;
+    const PlaneAt plane = layer_->surface.At((x + 0.5) * side, (y + 0.5) * side);
+    return SightsOf(context_, candidates, ground_.PlaceOf(*layer_, x, y, cell.height),
+                    layer_->layer_from_world.transpose() * plane.Normal());
+  }
+  static void Note(const std::vector<Sight>& sights, GroundCell* cell) {
+    cell->num_views = static_cast<uint8_t>(std::min(255, NumGood(sights)));
+    cell->parallax_deg = static_cast<uint8_t>(std::lround(ParallaxDeg(sights)));
+  }
+  // What other layers look at must not change while they do.
+  void JudgeCovered(const std::vector<Sight>& sights, int x, int y, GroundCell* cell) const {
+    Note(sights, cell);
+    if (!is_top_ || !NeedsBadPictures(context_, sights) || IsSmooth(x, y, *cell)) return;
+    cell->is_covered = false;
+    cell->cause = GapCause::kBadPicture;
+  }
+  void JudgeCell(const std::vector<int>& candidates, int x, int y, GroundCell* cell) const {
+    PredictCell(ground_, *layer_, x, y, cell);
+    if (!is_top_ && !IsHole(*layer_, x, y, cell->height, ground_.cell_side)) return;
+    const std::vector<Sight> sights = SightsAt(candidates, x, y, *cell);
+    if (sights.empty()) return;
+    Note(sights, cell);
+    cell->is_imaged = cell->is_expected = true;
+    if (is_top_ && IsCoveredFromAfar(sights, x, y, *cell)) {
+      cell->is_covered = true;
+      return;
+    }
+    cell->cause = CauseOf(context_, sights, ground_.PlaceOf(*layer_, x, y, cell->height));
+    if (cell->cause == GapCause::kOutOfArea) cell->is_expected = false;
+  }
+  // Whether the surroundings hold what the second nearest good picture can give there.
+  bool IsCoveredFromAfar(const std::vector<Sight>& sights, int x, int y,
+                         const GroundCell& cell) const {
+    const auto gsd = SecondGsd(sights);
+    const double spacing = gsd ? *gsd * options_.pixels_a_point : 0;
+    // What is as near as usual has been asked for its points already.
+    if (kCellSpacings * spacing <= kFar * ground_.cell_side) return false;
+    const double wanted = kCoveredShare * WantedPoints(cell.area, spacing);
+    // As many cells as should hold a few points.
+    const int reach =
+        std::clamp(static_cast<int>(std::sqrt(kFewPoints / wanted) / 2), 1, kMaxReach);
+    return CountAround(*layer_, x, y, reach) >= wanted * (2 * reach + 1) * (2 * reach + 1);
+  }
+  void RespectArea(int x, int y, GroundCell* cell) const {
+    if (options_.asked == nullptr) return;
+    const Eigen::Vector3d place =
+        ground_.frame.map_from_world * ground_.PlaceOf(*layer_, x, y, cell->height);
+    if (options_.asked->Contains(place.head<2>())) return;
+    cell->is_expected = false;
+    cell->cause = GapCause::kOutOfArea;
+  }
+
+  const SightContext& context_;
+  const JudgeOptions& options_;
+  const Ground& ground_;
+  bool is_top_;
+  GroundLayer* layer_;
+};
+
+}  // namespace
+
+void SpreadCells(const std::vector<SurveyView>& views, Ground* ground) {
+  GroundLayer& top = ground->LayerAt({Side::kTop, 0});
+  for (const SurveyView& view : views) SpreadFootprint(view, ground, &top);
+  for (auto& [key, layer] : ground->layers) {
+    if (key.side == Side::kTop) continue;
+    for (const TileKey& tile : layer.cells.Keys()) {
+      for (int k = 0; k < 9; ++k) layer.cells.TileAt({tile.x + k % 3 - 1, tile.y + k / 3 - 1});
+    }
+  }
+}
+
+void JudgeGround(const SightContext& context, const JudgeOptions& options, int num_threads,
+                 Ground* ground) {
+  for (auto& [key, layer] : ground->layers) {
+    const TileJudge judge(context, options, *ground, key.side == Side::kTop, &layer);
+    const std::vector<TileKey> keys = layer.cells.Keys();
+    ParallelFor(num_threads, static_cast<int64_t>(keys.size()),
+                [&](int64_t i) { judge.Judge(keys[static_cast<size_t>(i)]); });
+  }
+}
+
+}  // namespace colmap_seapoint

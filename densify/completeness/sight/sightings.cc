@@ -1,0 +1,144 @@
+#include "densify/completeness/sight/sightings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace colmap_seapoint {
+namespace {
+
+constexpr double kDegPerRad = 180 / 3.14159265358979323846;
+const double kMinCosine = std::cos(80 / kDegPerRad);
+// Of the depth, and in cells of the ground: a predicted surface may be off by that without being
+// hidden.
+constexpr double kHiddenShare = 0.01, kHiddenCells = 3;
+
+// Of a picture that nobody has looked at.
+constexpr uint8_t kUnknownTexture = 255;
+
+SightKind KindOf(const SightContext& context, int image_idx, const Eigen::Vector2d& pixel,
+                 double depth, uint8_t* texture) {
+  const auto i = static_cast<size_t>(image_idx);
+  const PictureFacts& facts = (*context.facts)[i];
+  const size_t cell = facts.Empty() ? 0 : facts.CellAt(pixel.x(), pixel.y());
+  const uint8_t flags = facts.Empty() ? 0 : facts.flags[cell];
+  *texture = facts.Empty() ? kUnknownTexture : facts.texture[cell];
+  if (flags & kMaskedCell) return SightKind::kMasked;
+  const double slack = kHiddenShare * depth + kHiddenCells * context.cell_side;
+  if (IsHidden((*context.depths)[i], pixel, depth, slack)) return SightKind::kHidden;
+  return facts.is_bad || (flags & kBadlyExposedCell) ? SightKind::kBad : SightKind::kGood;
+}
+
+using IsUsable = std::function<bool(SightKind)>;
+
+// Whether two of the usable ones see the place from two sides.
+bool HasPair(const std::vector<Sight>& sights, double min_parallax_deg, const IsUsable& is_usable) {
+  const double max_cosine = std::cos(min_parallax_deg / kDegPerRad);
+  for (size_t k = 1; k < sights.size(); ++k) {
+    if (!is_usable(sights[k].kind)) continue;
+    for (size_t m = 0; m < k; ++m) {
+      if (is_usable(sights[m].kind) && sights[m].toward.dot(sights[k].toward) <= max_cosine) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+bool IsGood(SightKind kind) { return kind == SightKind::kGood; }
+bool IsSeen(SightKind kind) { return kind == SightKind::kGood || kind == SightKind::kBad; }
+
+int Count(const std::vector<Sight>& sights, SightKind kind) {
+  return static_cast<int>(
+      std::count_if(sights.begin(), sights.end(), [&](const Sight& s) { return s.kind == kind; }));
+}
+
+// Whether what the second best picture shows is too smooth to be matched.
+bool LacksTexture(const std::vector<Sight>& sights, double min_texture) {
+  std::vector<uint8_t> texture;
+  for (const Sight& s : sights) {
+    if (s.kind == SightKind::kGood) texture.push_back(s.texture);
+  }
+  if (texture.size() < 2) return false;
+  const auto middle = texture.begin() + static_cast<std::ptrdiff_t>(texture.size() / 2);
+  std::nth_element(texture.begin(), middle, texture.end());
+  return *middle < min_texture;
+}
+
+}  // namespace
+
+std::vector<Sight> SightsOf(const SightContext& context, const std::vector<int>& candidates,
+                            const Eigen::Vector3d& place, const Eigen::Vector3d& normal) {
+  std::vector<Sight> sights;
+  const double normal_length = normal.norm();
+  for (const int image_idx : candidates) {
+    const SurveyView& view = (*context.views)[static_cast<size_t>(image_idx)];
+    const Eigen::Vector3d to_camera = view.center - place;
+    const double distance = to_camera.norm();
+    if (normal.dot(to_camera) < kMinCosine * distance * normal_length) continue;
+    const auto pixel = view.Project(place);
+    if (!pixel) continue;
+    Sight sight;
+    sight.image_idx = image_idx;
+    const double depth = view.rotation.row(2).dot(place) + view.translation.z();
+    sight.kind = KindOf(context, image_idx, *pixel, depth, &sight.texture);
+    const double cosine = normal.dot(to_camera) / (distance * normal_length);
+    sight.gsd = distance / view.camera->MeanFocal() / std::sqrt(cosine);
+    sight.toward = to_camera / distance;
+    sights.push_back(sight);
+  }
+  return sights;
+}
+
+double ParallaxDeg(const std::vector<Sight>& sights) {
+  double min_cosine = 1;
+  for (size_t k = 1; k < sights.size(); ++k) {
+    for (size_t m = 0; m < k; ++m) {
+      if (sights[k].kind != SightKind::kGood || sights[m].kind != SightKind::kGood) continue;
+      min_cosine = std::min(min_cosine, sights[m].toward.dot(sights[k].toward));
+    }
+  }
+  return std::acos(std::clamp(min_cosine, -1.0, 1.0)) * kDegPerRad;
+}
+
+int NumGood(const std::vector<Sight>& sights) { return Count(sights, SightKind::kGood); }
+
+std::optional<double> SecondGsd(const std::vector<Sight>& sights) {
+  std::vector<double> gsd;
+  for (const Sight& s : sights) {
+    if (s.kind == SightKind::kGood) gsd.push_back(s.gsd);
+  }
+  if (gsd.size() < 2) return std::nullopt;
+  std::nth_element(gsd.begin(), gsd.begin() + 1, gsd.end());
+  return gsd[1];
+}
+
+bool NeedsBadPictures(const SightContext& context, const std::vector<Sight>& sights) {
+  return !HasPair(sights, context.min_parallax_deg, IsGood) &&
+         HasPair(sights, context.min_parallax_deg, IsSeen);
+}
+
+GapCause CauseOf(const SightContext& context, const std::vector<Sight>& sights,
+                 const Eigen::Vector3d& place) {
+  const double angle = context.min_parallax_deg;
+  const bool has_hidden = Count(sights, SightKind::kHidden) > 0;
+  const bool has_masked = Count(sights, SightKind::kMasked) > 0;
+  const int num_good = NumGood(sights);
+  if (HasPair(sights, angle, IsGood)) {
+    return LacksTexture(sights, context.min_texture) ? GapCause::kNoTexture
+                                                     : GapCause::kViewsDisagree;
+  }
+  if (HasPair(sights, angle, IsSeen)) return GapCause::kBadPicture;
+  if (context.lost->RunThatSaw(place) >= 0) return GapCause::kPoseLost;
+  if (has_hidden && HasPair(sights, angle, [](SightKind k) {
+        return k == SightKind::kGood || k == SightKind::kBad || k == SightKind::kHidden;
+      })) {
+    return GapCause::kOccluded;
+  }
+  if (has_masked && num_good < 2) return GapCause::kOutOfArea;
+  if (num_good >= 2) return GapCause::kSmallParallax;
+  if (num_good + Count(sights, SightKind::kBad) >= 1) return GapCause::kImagedOnce;
+  return has_hidden ? GapCause::kOccluded : GapCause::kNone;
+}
+
+}  // namespace colmap_seapoint

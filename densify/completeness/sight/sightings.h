@@ -1,0 +1,57 @@
+// Which pictures see a place, how, and what follows for why nothing came out there.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "densify/completeness/sight/lost_pictures.h"
+#include "densify/completeness/sight/picture_facts.h"
+#include "densify/completeness/sight/survey_views.h"
+#include "densify/completeness/surface/gap_cause.h"
+
+namespace colmap_seapoint {
+
+enum class SightKind : uint8_t { kGood, kBad, kHidden, kMasked };
+
+struct Sight {
+  int image_idx = 0;
+  SightKind kind = SightKind::kGood;
+  uint8_t texture = 0;     // as in PictureFacts
+  double gsd = 0;          // units a pixel on the surface, mean of both directions
+  Eigen::Vector3d toward;  // unit, from the place to the camera
+};
+
+// What all judgements share. Everything is owned by the caller.
+struct SightContext {
+  const std::vector<SurveyView>* views;
+  const std::vector<DepthCells>* depths;
+  const std::vector<PictureFacts>* facts;  // by image_idx; Empty(): not looked at
+  const LostSight* lost;
+  double cell_side = 1;  // units
+  double min_parallax_deg = 2;
+  double min_texture = 0;  // as in PictureFacts: below it nothing can be matched
+};
+
+// `normal` need not be of unit length. The pictures that hold the place within their range and see
+// its surface at less than 80 degrees from the normal, in the order of `candidates`.
+std::vector<Sight> SightsOf(const SightContext& context, const std::vector<int>& candidates,
+                            const Eigen::Vector3d& place, const Eigen::Vector3d& normal);
+
+// Largest angle between two good ones, degrees; 0 for fewer than two.
+double ParallaxDeg(const std::vector<Sight>& sights);
+// Good ones.
+int NumGood(const std::vector<Sight>& sights);
+// GSD of the better pair: the second smallest of the good ones; nullopt for fewer than two.
+std::optional<double> SecondGsd(const std::vector<Sight>& sights);
+
+// Whether no two good pictures see the place from two sides, but bad ones make up for it: what is
+// measured in blurred pictures is not to be trusted.
+bool NeedsBadPictures(const SightContext& context, const std::vector<Sight>& sights);
+
+// The best cause: the first thing that would have had to be otherwise. kNone when no picture holds
+// the place, not even a hidden, masked or lost one.
+GapCause CauseOf(const SightContext& context, const std::vector<Sight>& sights,
+                 const Eigen::Vector3d& place);
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,92 @@
+// The surface as cells on plans: where the cloud covers it, and where something is missing.
+//
+// A cell is two wanted spacings wide. Cells lie on the six sides of a box around the survey
+// (MapFrame): the top one holds all that faces the viewer of the map, the others what is steeper
+// than 75 degrees. The five others are cut into slabs as deep as kSlabCells cells, so that two
+// walls one behind the other, or the underside of one thing above that of another, are layers of
+// their own.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <map>
+#include <tuple>
+
+#include "densify/completeness/surface/gap_cause.h"
+#include "densify/completeness/surface/map_frame.h"
+#include "densify/completeness/surface/plane_pyramid.h"
+#include "densify/completeness/surface/tiled_grid.h"
+
+namespace colmap_seapoint {
+
+inline constexpr int kSlabCells = 128;
+inline constexpr double kCellSpacings = 2;  // side of a cell, in wanted spacings
+
+struct GroundCell {
+  float height = 0;    // along the side's axis: mean of the points, or the predicted surface's
+  float area = 0;      // units^2 of surface, along its slope
+  uint16_t count = 0;  // points of enough confidence
+  bool is_covered = false;
+  bool is_thin = false;      // not covered, yet with too many points to call it a gap
+  bool is_imaged = false;    // in the frame of a picture, be it hidden there
+  bool is_expected = false;  // part of what the survey should have covered
+  GapCause cause = GapCause::kNone;
+  uint8_t num_views = 0;     // usable pictures that see it
+  uint8_t parallax_deg = 0;  // the largest between two of them, up to 180
+};
+
+struct LayerKey {
+  Side side = Side::kTop;
+  int slab = 0;
+  bool operator<(const LayerKey& other) const {
+    return std::tie(side, slab) < std::tie(other.side, other.slab);
+  }
+};
+
+struct GroundLayer {
+  Eigen::Matrix3d layer_from_world;  // rows: u, v, height
+  TiledGrid<GroundCell> cells;
+  PlanePyramid surface;
+
+  GroundLayer(const Eigen::Matrix3d& rotation, double cell_side)
+      : layer_from_world(rotation), surface(4 * cell_side) {}
+};
+
+struct Ground {
+  MapFrame frame;
+  double cell_side = 1;  // units
+  std::map<LayerKey, GroundLayer> layers;
+
+  GroundLayer& LayerAt(const LayerKey& key);
+  // World coordinates of a cell's middle, at a height.
+  Eigen::Vector3d PlaceOf(const GroundLayer& layer, int x, int y, double height) const;
+  int CellOf(double coordinate) const;
+};
+
+struct SurfacePoint {
+  Eigen::Vector3d xyz, normal;  // world; normal zero: unknown
+};
+
+// Counts a point of the cloud.
+void AddPoint(const SurfacePoint& point, Ground* ground);
+// A triangulated point of the model: it says where the surface is, and covers nothing.
+void AddHint(const Eigen::Vector3d& xyz, Ground* ground);
+
+// To be called once, after all points: heights, areas and which cells are covered. A cell is
+// covered when it, or it and its neighbours together, hold 0.7 of the points that the spacing asks
+// for on a surface of that slope (measured: so the share is that of the surface with a point within
+// two GSD); with half of them it is thin. Either needs neighbours that lie on one surface with it.
+// Threads: any number, the same result.
+void FinishPoints(int num_threads, Ground* ground);
+
+// Height and area of a cell without points, from the predicted surface.
+void PredictCell(const Ground& ground, const GroundLayer& layer, int x, int y, GroundCell* cell);
+
+// Points of the (2 reach + 1)^2 cells around one.
+int CountAround(const GroundLayer& layer, int x, int y, int reach);
+
+// Points that the spacing asks for on an area.
+double WantedPoints(double area, double spacing);
+inline constexpr double kCoveredShare = 0.7, kThinShare = 0.5;
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,142 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "colmap_seapoint/io/cloud/ply.h"
+#include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/image/image_file.h"
+#include "tests/cli/cli_runner.h"
+
+namespace colmap_seapoint {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+// Six pictures of 160 x 120 pixels in a row over the plane z = 0, 3.2 x 2.4 units each, 0.6 apart,
+// and a cloud of what two of them see, with a hole of one unit about (0, 1.5).
+class CompletenessReporter : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_ / "images");
+    SparseModel model;
+    Camera camera = MakeCamera(CameraModel::kPinhole, 125, 160, 120);
+    camera.camera_id = 1;
+    model.cameras[1] = camera;
+    for (int k = 0; k < 6; ++k) {
+      PosedImage image;
+      image.image_id = static_cast<uint32_t>(k + 1);
+      image.camera_id = 1;
+      image.name = "dive_" + std::to_string(k) + ".png";
+      image.cam_from_world.rotation = Eigen::Quaterniond(0, 1, 0, 0);
+      image.cam_from_world.translation = {0, 0.6 * k, 2.5};
+      WriteImage(folder_ / "images" / image.name, Texture(k));
+      model.images.push_back(image);
+    }
+    WriteSparseModelText(folder_ / "sparse", model);
+    WriteCloud({0, 0});
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  static ColorImage Texture(int seed) {
+    ColorImage image(160, 120, 3);
+    uint32_t random = static_cast<uint32_t>(seed);
+    for (uint8_t& value : image.data) {
+      random = random * 1664525u + 1013904223u;
+      value = static_cast<uint8_t>(60 + (random >> 25));
+    }
+    return image;
+  }
+  void WriteCloud(const Eigen::Vector2d& shift) const {
+    CloudWriter cloud(folder_ / "fused.ply");
+    for (double y = -0.6; y < 3.6; y += 0.02) {
+      for (double x = -1.6; x < 1.6; x += 0.02) {
+        if (std::hypot(x, y - 1.5) < 0.5) continue;
+        CloudPoint point;
+        point.xyz = Eigen::Vector3d(x + shift.x(), y + shift.y(), 0).cast<float>();
+        point.normal = {0, 0, 1};
+        const uint32_t seen_by[] = {0, 1};
+        cloud.Add(point, seen_by, 2);
+      }
+    }
+    cloud.Finish();
+  }
+  CliResult Report(std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments = {"completeness_reporter",          "--input_path",
+                                          (folder_ / "sparse").string(),    "--cloud_path",
+                                          (folder_ / "fused.ply").string(), "--output_path",
+                                          (folder_ / "out").string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunProgram(SEAPOINT_PROGRAM, arguments);
+  }
+  Json Answer() const {
+    std::ifstream in(folder_ / "out" / "completeness.json");
+    return Json::parse(in);
+  }
+
+  const fs::path folder_ = fs::path(testing::TempDir()) / "completeness_reporter_test";
+};
+
+TEST_F(CompletenessReporter, TheHoleIsFound) {
+  const CliResult result = Report({"--image_path", (folder_ / "images").string()});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("% of"), std::string::npos);
+  const Json answer = Answer();
+  bool is_found = false;
+  for (const Json& gap : answer.at("gaps")) {
+    if (gap.at("cause") != "views_disagree") continue;
+    is_found = true;
+    EXPECT_NEAR(gap.at("area").get<double>(), 0.785, 0.06);
+    EXPECT_NEAR(gap.at("centroid")[1].get<double>(), 1.5, 0.05);
+  }
+  EXPECT_TRUE(is_found);
+  EXPECT_EQ(answer.at("unit"), "units");
+  for (const char* name : {"gaps.geojson", "gaps.csv", "map.png", "run.json"}) {
+    EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
+  }
+  // Again into the same folder: the ids stay.
+  ASSERT_EQ(Report({"--image_path", (folder_ / "images").string()}).exit_code, 0);
+  EXPECT_EQ(Answer().at("gaps"), answer.at("gaps"));
+}
+
+TEST_F(CompletenessReporter, WithoutPictures) {
+  const CliResult result = Report();
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+}
+
+TEST_F(CompletenessReporter, UnreadablePictureIsNamed) {
+  WriteTextFile(folder_ / "images" / "dive_2.png", "no picture");
+  const CliResult result = Report({"--image_path", (folder_ / "images").string()});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_NE(result.err.find("dive_2.png"), std::string::npos);
+}
+
+TEST_F(CompletenessReporter, FaultsSayWhatToDo) {
+  const auto last_line_of = [&](const CliResult& result) {
+    EXPECT_EQ(result.exit_code, 1);
+    return result.err;
+  };
+  const fs::path area = folder_ / "area.geojson";
+  WriteTextFile(area, R"({"type":"Polygon","coordinates":[[[0,0],[1,1],[1,0],[0,1],[0,0]]]})");
+  EXPECT_NE(last_line_of(Report({"--area", area.string()})).find("crosses itself"),
+            std::string::npos);
+  // Another dive's pictures.
+  fs::create_directories(folder_ / "other");
+  fs::copy_file(folder_ / "images" / "dive_0.png", folder_ / "other" / "other.png");
+  const CliResult other = Report({"--image_path", (folder_ / "other").string()});
+  EXPECT_NE(last_line_of(other).find("none of the model's pictures"), std::string::npos);
+  WriteCloud({100, 0});
+  EXPECT_NE(last_line_of(Report()).find("of the cloud lie in any picture"), std::string::npos);
+  fs::remove(folder_ / "fused.ply");
+  EXPECT_NE(last_line_of(Report()).find("fused.ply"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace colmap_seapoint

@@ -1,0 +1,135 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <set>
+
+#include "densify/completeness/gaps/gap_regions.h"
+#include "densify/completeness/surface/asked_area.h"
+#include "densify/completeness/surface/map_frame.h"
+#include "densify/completeness/surface/plane_pyramid.h"
+#include "densify/completeness/surface/tiled_grid.h"
+
+namespace colmap_seapoint {
+namespace {
+
+TEST(TiledGrid, NegativeCellsHaveTilesOfTheirOwn) {
+  TiledGrid<int> grid;
+  for (int x = -40; x <= 40; x += 8) grid.At(x, -x) = x;
+  for (int x = -40; x <= 40; x += 8) EXPECT_EQ(*grid.Find(x, -x), x);
+  EXPECT_EQ(grid.Find(1000, 1000), nullptr);
+  int sum = 0, count = 0;
+  grid.ForEach([&](int x, int y, int value) {
+    sum += value;
+    if (value != 0) {
+      ++count;
+      EXPECT_EQ(x, value);
+      EXPECT_EQ(y, -value);
+    }
+  });
+  EXPECT_EQ(sum, 0);
+  EXPECT_EQ(count, 10);
+}
+
+TEST(PlanePyramid, PlaneThroughAHole) {
+  PlanePyramid pyramid(0.1);
+  const auto height = [](double u, double v) { return 2 + 0.3 * u - 0.2 * v; };
+  for (double v = 0; v < 10; v += 0.05) {
+    for (double u = 0; u < 10; u += 0.05) {
+      if (std::hypot(u - 5, v - 5) > 2) pyramid.Add(u, v, height(u, v), 1);
+    }
+  }
+  pyramid.Finish();
+  for (const auto& [u, v] : {std::pair{5.0, 5.0}, {4.0, 6.0}, {1.0, 9.0}, {10.3, 5.0}}) {
+    const PlaneAt plane = pyramid.At(u, v);
+    EXPECT_NEAR(plane.height, height(u, v), 0.02) << u << " " << v;
+    EXPECT_NEAR(plane.slope.x(), 0.3, 0.02);
+    EXPECT_NEAR(plane.slope.y(), -0.2, 0.02);
+  }
+  EXPECT_EQ(PlanePyramid(1).At(3, 4).height, 0);
+}
+
+TEST(MapFrame, LevelledWorldIsTheMap) {
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < 100; ++i) points.emplace_back(i % 10, i / 10, 0.1 * (i % 3) + 0.1 * (i % 10));
+  EXPECT_TRUE(FitMapFrame(points, {{5, 5, 4}}).IsWorld());
+  // Seen from below: up is down.
+  EXPECT_FALSE(FitMapFrame(points, {{5, 5, -4}}).IsWorld());
+}
+
+TEST(MapFrame, SidesAreRightHanded) {
+  for (int i = 0; i < kNumSides; ++i) {
+    const Eigen::Matrix3d side = SideFromMap(static_cast<Side>(i));
+    EXPECT_NEAR(side.determinant(), 1, 1e-12);
+    EXPECT_TRUE((side * side.transpose()).isIdentity(1e-12));
+    // A normal towards the viewer of a side belongs to it.
+    EXPECT_EQ(SideOf(side.row(2).transpose()), static_cast<Side>(i));
+  }
+  EXPECT_EQ(SideOf(Eigen::Vector3d::Zero()), Side::kTop);
+  EXPECT_EQ(SideOf({0.9, 0, 0.4}), Side::kTop);
+  EXPECT_EQ(SideOf({0.99, 0, 0.1}), Side::kRight);
+}
+
+TEST(AskedArea, HolesAndCrossings) {
+  const Ring square = {{0, 0}, {4, 0}, {4, 4}, {0, 4}}, hole = {{1, 1}, {2, 1}, {2, 2}, {1, 2}};
+  const AskedArea area{{square, hole}};
+  EXPECT_TRUE(area.Contains({3, 3}));
+  EXPECT_FALSE(area.Contains({1.5, 1.5}));
+  EXPECT_FALSE(area.Contains({5, 1}));
+  EXPECT_FALSE(CrossesItself(square));
+  EXPECT_TRUE(CrossesItself({{0, 0}, {4, 4}, {4, 0}, {0, 4}}));
+  EXPECT_DOUBLE_EQ(SignedArea(square), 16);
+}
+
+using Cells = std::vector<std::pair<int, int>>;
+
+double AreaOfRings(const std::vector<Ring>& rings) {
+  double area = 0;
+  for (const Ring& ring : rings) area += SignedArea(ring);
+  return area;
+}
+
+TEST(TraceCells, RingWithHole) {
+  Cells cells;
+  for (int y = 0; y < 4; ++y) {
+    for (int x = 0; x < 5; ++x) {
+      if (x != 2 || y != 2) cells.emplace_back(x, y);
+    }
+  }
+  const std::vector<Ring> rings = TraceCells(cells);
+  ASSERT_EQ(rings.size(), 2u);
+  EXPECT_EQ(rings[0].size(), 4u);
+  EXPECT_DOUBLE_EQ(SignedArea(rings[0]), 20);
+  EXPECT_DOUBLE_EQ(SignedArea(rings[1]), -1);
+}
+
+TEST(TraceCells, CornersThatTouchStayApart) {
+  const std::vector<Ring> rings = TraceCells({{0, 0}, {1, 1}});
+  ASSERT_EQ(rings.size(), 2u);
+  for (const Ring& ring : rings) EXPECT_DOUBLE_EQ(SignedArea(ring), 1);
+}
+
+TEST(TraceCells, AnyShapeKeepsItsAreaAndItsCells) {
+  uint32_t random = 1;
+  for (int round = 0; round < 50; ++round) {
+    Cells cells;
+    for (int y = 0; y < 12; ++y) {
+      for (int x = 0; x < 12; ++x) {
+        random = random * 1664525u + 1013904223u;
+        if ((random >> 16) % 3 != 0) cells.emplace_back(x, y);
+      }
+    }
+    const std::vector<Ring> rings = TraceCells(cells);
+    EXPECT_DOUBLE_EQ(AreaOfRings(rings), static_cast<double>(cells.size()));
+    const AskedArea area{rings};
+    const std::set<std::pair<int, int>> in(cells.begin(), cells.end());
+    for (int y = 0; y < 12; ++y) {
+      for (int x = 0; x < 12; ++x) {
+        EXPECT_EQ(area.Contains({x + 0.5, y + 0.5}), in.count({x, y}) > 0);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace colmap_seapoint
