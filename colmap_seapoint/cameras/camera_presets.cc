@@ -18,8 +18,8 @@ constexpr size_t kNumNearest = 3;
 // Water straightens it: behind a flat port the polynomial of OPENCV holds it, behind a dome it
 // stays a fisheye.
 constexpr double kGoProWide = 437.0 / 960;
-// GoPro, linear: 19 mm, as the camera's own menu has it for its digital lenses from HERO8 on, of the
-// 36 mm of film.
+// GoPro, linear: 19 mm, as the camera's own menu has it for its digital lenses from HERO8 on, of
+// the 36 mm of film.
 constexpr double kGoProLinear = 19.0 / 36;
 // Olympus Tough TG-1 to TG-7: 4.5 mm at the wide end, 25 mm by the maker's data sheet, in pictures
 // of 4 to 3: 25 of the 34.6 mm that are as long a side to the same diagonal.
