@@ -24,7 +24,6 @@ using Json = nlohmann::json;
 class CompletenessReporter : public testing::Test {
  protected:
   void SetUp() override {
-    fs::remove_all(folder_);
     fs::create_directories(folder_ / "images");
     SparseModel model;
     Camera camera = MakeCamera(CameraModel::kPinhole, 125, 160, 120);
@@ -43,7 +42,6 @@ class CompletenessReporter : public testing::Test {
     WriteSparseModelText(folder_ / "sparse", model);
     WriteCloud({0, 0});
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   static ColorImage Texture(int seed) {
     ColorImage image(160, 120, 3);
@@ -81,7 +79,7 @@ class CompletenessReporter : public testing::Test {
     return Json::parse(in);
   }
 
-  const fs::path folder_ = fs::path(testing::TempDir()) / "completeness_reporter_test";
+  TemporaryFolder folder_;
 };
 
 TEST_F(CompletenessReporter, TheHoleIsFound) {

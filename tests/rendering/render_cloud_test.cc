@@ -11,18 +11,15 @@
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "colmap_seapoint/rendering/legend.h"
+#include "tests/io/test_files.h"
 
 namespace colmap_seapoint {
 namespace {
-
-namespace fs = std::filesystem;
 
 // A plane of 2 x 1, all white; 1 point in 100 lies a hundred times as far away.
 class RenderCloud : public testing::Test {
  protected:
   void SetUp() override {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
     std::string text =
         "ply\nformat ascii 1.0\nelement vertex 20200\nproperty float x\nproperty float y\n"
         "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
@@ -36,9 +33,7 @@ class RenderCloud : public testing::Test {
       text += std::to_string(i) + " " + std::to_string(2 * i) + " 50" + rest;
     WriteTextFile(options_.input_path, text);
   }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  fs::path folder_ = fs::temp_directory_path() / "render_cloud_test";
+  TempDir folder_;
   CloudRendererOptions options_ = [this] {
     CloudRendererOptions options;
     options.input_path = (folder_ / "cloud.ply").string();
