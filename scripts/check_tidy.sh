@@ -15,7 +15,9 @@ tidy=$(command -v clang-tidy-14 || command -v clang-tidy) ||
 [ -f $build/compile_commands.json ] || { echo "$build is missing; build the release first" >&2; exit 1; }
 
 if [ $# -eq 0 ]; then
-  mapfile -t files < <(find colmap_seapoint feature densify -name '*.cc' | LC_ALL=C sort)
+  # Those that this machine compiles: what an optional library is missing for is not among them.
+  mapfile -t files < <(sed -n "s#^ *\"file\": \"$PWD/\(.*\)\".*#\1#p" $build/compile_commands.json |
+    grep -E '^(colmap_seapoint|feature|densify)/' | LC_ALL=C sort -u)
 else
   files=("$@")
 fi

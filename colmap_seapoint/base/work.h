@@ -40,6 +40,6 @@ class WorkObserver {
 
 // The one that all work is told to from now on; nullptr: none, each part then speaks for itself.
 // Not to be called while a Progress lives.
-void SetWorkObserver(WorkObserver* observer);
+void SetWorkObserver(WorkObserver* of_all_work);
 
 }  // namespace colmap_seapoint

@@ -83,8 +83,9 @@ std::vector<PdfPage> SingleMarkers(const MarkerSheetOptions& options) {
       DrawRuler(kMargin + 5, kA4Long - kMargin - 6, RulerLength(kA4Short - 2 * kMargin - 10),
                 &pages.back());
     }
-    const double x = kMargin + place % columns * width + quiet;
-    const double y = kMargin + place / columns * height + quiet;
+    const int column = place % columns, row = place / columns;
+    const double x = kMargin + column * width + quiet;
+    const double y = kMargin + row * height + quiet;
     DrawMarker(NameOf(options, k), x, y, options.size_mm, &pages.back());
     DrawCaption(NameOf(options, k), x, y + options.size_mm + quiet + 4, options.size_mm,
                 &pages.back());

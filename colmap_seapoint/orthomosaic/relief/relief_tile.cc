@@ -86,8 +86,8 @@ void CellGrid::AddPoints(const std::vector<TilePoint>& points) {
   std::vector<TilePoint> sorted(points.size());
   for (const TilePoint& point : points) {
     const size_t cell = cell_of(point);
-    const float x = static_cast<float>(cell % static_cast<size_t>(nx_)) + 0.5f;
-    const float y = static_cast<float>(cell / static_cast<size_t>(nx_)) + 0.5f;
+    const size_t column = cell % static_cast<size_t>(nx_), row = cell / static_cast<size_t>(nx_);
+    const float x = static_cast<float>(column) + 0.5f, y = static_cast<float>(row) + 0.5f;
     sorted[ends[cell]++] = {(point.column + kTileHalo) * per_pixel - x,
                             (point.row + kTileHalo) * per_pixel - y, point.height * per_unit,
                             point.weight};

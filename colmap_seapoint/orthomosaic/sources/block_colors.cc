@@ -39,8 +39,9 @@ class SourceViewer {
     int count = 0;
     for (int i = 0; i < kSamples * kSamples; ++i) {
       const double step = static_cast<double>(kBlockSize) / kSamples;
-      const double dx = (i % kSamples + 0.5) * step - 0.5 * kBlockSize;
-      const double dy = (i / kSamples + 0.5) * step - 0.5 * kBlockSize;
+      const int column = i % kSamples, row = i / kSamples;
+      const double dx = (column + 0.5) * step - 0.5 * kBlockSize;
+      const double dy = (row + 0.5) * step - 0.5 * kBlockSize;
       const auto pixel = view_.PixelOf(PlaceInBlock(relief_, x, y, dx, dy));
       if (!pixel) continue;
       const auto px = static_cast<float>(scale_x_ * pixel->x());
@@ -97,7 +98,7 @@ void SortSources(Source* sources) {
   }
   for (int k = 0; k < kMaxSources; ++k) {
     if (sources[k].picture == kNoPicture) continue;
-    const float blur = static_cast<float>(sharpest) / sources[k].sharpness;
+    const float blur = static_cast<float>(sharpest) / static_cast<float>(sources[k].sharpness);
     sources[k].cost += static_cast<float>(kSharpWeight) *
                        std::log2(std::clamp(blur, kMinBlur, kMaxBlur) / kMinBlur);
   }
