@@ -11,7 +11,6 @@
 namespace colmap_seapoint {
 namespace {
 
-constexpr size_t kRecordHeaderBytes = 54;
 constexpr uint8_t kPointFormat = 7;
 constexpr uint16_t kCrsIsWkt = 1 << 4;  // what format 7 demands, also where there is none
 constexpr uint8_t kOnlyReturn = 1 | 1 << 4;
