@@ -2,8 +2,8 @@
 # scripts/test.sh [CTEST_OPTION...]
 #
 # The gate: installs what is missing, then checks the formatting, builds the release with warnings as
-# errors, runs every test, clang-tidy, and the unit tests of the core under sanitizers. Stops at the
-# first part that fails. Prints how long each took.
+# errors, runs every test, clang-tidy, and the unit tests of what reads files under sanitizers. Stops
+# at the first part that fails. Prints how long each took.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -32,5 +32,5 @@ part "formatting" check_format
 part "build, warnings are errors" build_release
 part "tests" ctest --preset release --parallel "$(nproc)" "$@"
 part "clang-tidy" scripts/check_tidy.sh
-part "core under ASan and UBSan" scripts/check_sanitized.sh asan
+part "files under ASan and UBSan" scripts/check_sanitized.sh files
 echo "== all passed: $SECONDS s" >&2
