@@ -114,6 +114,16 @@ void RenderTiles(const MapScene& scene, int num_threads, MapPictures* pictures,
   progress.Finish();
 }
 
+// The points by tiles are gone again when the relief is there.
+Relief MakeRelief(const OrthomosaicOptions& options, const OrthomosaicInputs& inputs, double ground,
+                  OrthomosaicSummary* summary) {
+  const CloudTiles cloud(inputs.cloud_path, summary->frame.map_from_cloud, summary->grid, ground,
+                         inputs.temporary_folder);
+  summary->cell_size = cloud.UsualCellSize();
+  summary->num_points_outside = cloud.NumOutside();
+  return Relief(cloud, summary->grid, options.fill, options.num_threads, inputs.temporary_folder);
+}
+
 }  // namespace
 
 OrthomosaicSummary MakeOrthomosaic(const OrthomosaicOptions& options,
@@ -127,18 +137,12 @@ OrthomosaicSummary MakeOrthomosaic(const OrthomosaicOptions& options,
   summary.grid = MakeMapGrid(sample, options.pixel_size > 0 ? options.pixel_size : summary.gsd);
 
   const double ground = MedianHeight(sample);
-  const CloudTiles cloud(inputs.cloud_path, summary.frame.map_from_cloud, summary.grid, ground,
-                         inputs.temporary_folder);
-  summary.cell_size = cloud.UsualCellSize();
-  summary.num_points_outside = cloud.NumOutside();
-  const Relief relief(cloud, summary.grid, options.fill, options.num_threads,
-                      inputs.temporary_folder);
+  const Relief relief = MakeRelief(options, inputs, ground, &summary);
 
   MapPictures pictures(inputs.read, Reductions(views, ground, summary.grid.pixel_size),
                        options.picture_bytes);
   SourceBlocks sources = FindSources(relief, views, options.num_threads);
-  const std::vector<PictureUse> use =
-      LookAtSources(relief, views, options.num_threads, &pictures, &sources);
+  summary.pictures_unread = LookAtSources(relief, views, options.num_threads, &pictures, &sources);
   const Exposure exposure =
       options.balance ? BalanceExposure(relief, views, sources) : EqualExposure(views.size());
   ChooseSources(relief.Blocks(), exposure, options.num_threads, &sources);
@@ -147,9 +151,6 @@ OrthomosaicSummary MakeOrthomosaic(const OrthomosaicOptions& options,
   TileWriter writer(views.size(), sink, &summary);
   RenderTiles({relief, views, sources, exposure}, options.num_threads, &pictures, &writer);
   summary.pictures_used = writer.PicturesUsed();
-  for (size_t i = 0; i < use.size(); ++i) {
-    if (use[i] == PictureUse::kUnreadable) summary.pictures_unread.push_back(i);
-  }
   summary.num_picture_reads = pictures.NumReads();
   return summary;
 }

@@ -97,7 +97,7 @@ class TileCanvas::Brush {
     const MapPlace place(canvas_.box_.x + x + 0.5, canvas_.box_.y + y + 0.5, double{height});
     const Eigen::Vector2d on_map = canvas_.scene_.relief.Grid().PlaceOf(place.x(), place.y());
     const auto pixel = view_.PixelOf({on_map.x(), on_map.y(), place.z()});
-    if (!pixel) return false;
+    if (!pixel || picture_->Empty()) return false;  // a file may be gone by now
     const auto px = static_cast<float>(scale_x_ * pixel->x());
     const auto py = static_cast<float>(scale_y_ * pixel->y());
     if (IsMasked(*picture_, px, py) || canvas_.sight_.IsHidden(place, camera_)) return false;

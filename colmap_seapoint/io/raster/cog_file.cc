@@ -7,7 +7,7 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/parallel.h"
-#include "colmap_seapoint/system/system_error.h"
+#include "colmap_seapoint/io/files/atomic_file.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -90,12 +90,6 @@ void WriteBlockIndex(const std::vector<std::filesystem::path>& blocks,
   index.Commit();
 }
 
-void MakeFolder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw SystemError(folder, "the folder cannot be created", error.value());
-}
-
 std::filesystem::path BlockFolder(const std::filesystem::path& path) {
   return path.parent_path() / (path.stem().string() + "_blocks");
 }
@@ -175,7 +169,7 @@ std::filesystem::path BlockIndexPath(const std::filesystem::path& path) {
 
 void WriteBlocks(GDALDatasetH scratch, const std::filesystem::path& path,
                  const RasterLayout& layout, int max_side, int num_threads) {
-  MakeFolder(BlockFolder(path));
+  CheckWritableDir(BlockFolder(path));
   const std::vector<RasterWindow> blocks = Blocks(layout, max_side);
   const std::vector<std::filesystem::path> paths = BlockPaths(path, layout, max_side);
   for (size_t i = 0; i < blocks.size(); ++i) {

@@ -89,7 +89,7 @@ void WritePreview(const std::filesystem::path& map, const std::filesystem::path&
   const int width = SideOf(layout.width, longer, max_side);
   const int height = SideOf(layout.height, longer, max_side);
   WriteJpeg(jpeg, OnWhite(colors.ReadColors(width, height)), {});
-  layout.pixel_size *= static_cast<double>(layout.width) / width;
+  layout.pixel_size *= static_cast<double>(longer) / std::max(width, height);
   WriteWorldFile(jpeg, layout);
 }
 

@@ -62,7 +62,10 @@ RasterReader::RasterReader(const std::filesystem::path& path, int max_side)
   GDALGetGeoTransform(dataset, transform);
   layout.min_x = transform[0];
   layout.max_y = transform[3];
-  layout.pixel_size = transform[1] * GDALGetRasterXSize(dataset) / layout.width;
+  // By the longer side, whose rounding weighs less.
+  layout.pixel_size = transform[1] *
+                      std::max(GDALGetRasterXSize(dataset), GDALGetRasterYSize(dataset)) /
+                      std::max(layout.width, layout.height);
   layout.crs = GDALGetProjectionRef(dataset);
   layout.unit = GDALGetRasterUnitType(GDALGetRasterBand(dataset, 1));
   int has_nodata = 0;

@@ -107,7 +107,7 @@ CloudTiles::CloudTiles(const std::filesystem::path& path, const Rigid3d& map_fro
   });
   store_.Finish();
   FindCellSizes();
-  block_counts_ = {};
+  std::vector<uint32_t>().swap(block_counts_);
 }
 
 void CloudTiles::Add(const Eigen::Vector3d& in_map, float confidence) {

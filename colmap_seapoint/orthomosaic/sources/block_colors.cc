@@ -34,7 +34,7 @@ class SourceViewer {
         scale_y_(static_cast<double>(picture.luma.height) / view.GetCamera().height) {}
 
   // False where the picture shows too little of the block that may be used.
-  bool Look(int x, int y, Source* source) const {
+  void Look(int x, int y, Source* source) const {
     float sum[3] = {0, 0, 0}, contrast = 0;
     int count = 0;
     for (int i = 0; i < kSamples * kSamples; ++i) {
@@ -52,13 +52,12 @@ class SourceViewer {
       contrast += ContrastAt(picture_.luma, static_cast<int>(px), static_cast<int>(py));
       ++count;
     }
-    if (2 * count < kSamples * kSamples) return false;
+    if (2 * count < kSamples * kSamples) return;
     for (size_t c = 0; c < 3; ++c) {
       source->rgb[c] = static_cast<uint8_t>(sum[c] / static_cast<float>(count) + 0.5f);
     }
     const float mean = contrast / static_cast<float>(count);
     source->sharpness = static_cast<uint8_t>(std::clamp(200 * mean, 1.0f, 255.0f));
-    return true;
   }
 
  private:
@@ -68,13 +67,6 @@ class SourceViewer {
   double scale_x_, scale_y_;
 };
 
-Source* FindPicture(uint32_t picture, Source* sources) {
-  for (int k = 0; k < kMaxSources; ++k) {
-    if (sources[k].picture == picture) return &sources[k];
-  }
-  return nullptr;
-}
-
 // Touches the sources of this picture alone.
 void LookAtPicture(const Relief& relief, const MapView& view, uint32_t picture_idx,
                    const std::array<int, 4>& blocks, const Picture& picture,
@@ -83,8 +75,8 @@ void LookAtPicture(const Relief& relief, const MapView& view, uint32_t picture_i
   for (int y = blocks[1]; y <= blocks[3]; ++y) {
     for (int x = blocks[0]; x <= blocks[2]; ++x) {
       const int32_t at = sources->slot[relief.Blocks().At(x, y)];
-      Source* source = at < 0 ? nullptr : FindPicture(picture_idx, sources->Of(at));
-      if (source && (picture.Empty() || !viewer.Look(x, y, source))) source->sharpness = 0;
+      const Source* source = at < 0 ? nullptr : sources->Find(at, picture_idx);
+      if (source) viewer.Look(x, y, &sources->Of(at)[source - sources->Of(at)]);
     }
   }
 }
@@ -117,25 +109,26 @@ bool IsUsable(const Camera& camera, const Picture& picture, int reduction) {
 
 }  // namespace
 
-std::vector<PictureUse> LookAtSources(const Relief& relief, const std::vector<MapView>& views,
-                                      int num_threads, MapPictures* pictures,
-                                      SourceBlocks* sources) {
-  std::vector<PictureUse> use(views.size(), PictureUse::kNotLookedAt);
+std::vector<size_t> LookAtSources(const Relief& relief, const std::vector<MapView>& views,
+                                  int num_threads, MapPictures* pictures, SourceBlocks* sources) {
+  std::vector<uint8_t> is_unusable(views.size(), 0);
   const std::vector<std::array<int, 4>> blocks = FootprintBlocks(relief, views);
   ParallelFor(num_threads, static_cast<int64_t>(views.size()), [&](int64_t index) {
     const auto i = static_cast<size_t>(index);
     if (blocks[i][0] > blocks[i][2] || blocks[i][1] > blocks[i][3]) return;
     const auto picture_idx = static_cast<uint32_t>(i);
     const std::shared_ptr<const Picture> picture = pictures->Get(picture_idx);
-    const bool is_usable =
-        IsUsable(views[i].GetCamera(), *picture, pictures->Reduction(picture_idx));
-    use[i] = is_usable ? PictureUse::kUsable : PictureUse::kUnreadable;
-    LookAtPicture(relief, views[i], picture_idx, blocks[i], is_usable ? *picture : Picture(),
-                  sources);
+    is_unusable[i] = !IsUsable(views[i].GetCamera(), *picture, pictures->Reduction(picture_idx));
+    if (is_unusable[i]) return;
+    LookAtPicture(relief, views[i], picture_idx, blocks[i], *picture, sources);
   });
   ParallelFor(num_threads, static_cast<int64_t>(sources->NumSlots()),
               [&](int64_t slot) { SortSources(sources->Of(static_cast<int32_t>(slot))); });
-  return use;
+  std::vector<size_t> unusable;
+  for (size_t i = 0; i < views.size(); ++i) {
+    if (is_unusable[i]) unusable.push_back(i);
+  }
+  return unusable;
 }
 
 }  // namespace colmap_seapoint

@@ -9,14 +9,11 @@
 
 namespace colmap_seapoint {
 
-enum class PictureUse : uint8_t { kNotLookedAt, kUsable, kUnreadable };
-
 // Fills in mean colour and sharpness of all sources, each picture read once; takes out sources that
 // are masked there, and all of a picture that cannot be read or has other proportions than its
-// camera. Then sharper pictures become cheaper, against the sharpest of a block, and the sources of
-// a block are sorted anew. About 2 microseconds a source.
-std::vector<PictureUse> LookAtSources(const Relief& relief, const std::vector<MapView>& views,
-                                      int num_threads, MapPictures* pictures,
-                                      SourceBlocks* sources);
+// camera: those are returned. Then sharper pictures become cheaper, against the sharpest of a
+// block, and the sources of a block are sorted anew. About 2 microseconds a source.
+std::vector<size_t> LookAtSources(const Relief& relief, const std::vector<MapView>& views,
+                                  int num_threads, MapPictures* pictures, SourceBlocks* sources);
 
 }  // namespace colmap_seapoint

@@ -47,8 +47,10 @@ class SeamChooser {
   }
 
  private:
+  // -1 where there is nothing to choose from, too: no seam passes there, and the line ends.
   int32_t SlotAt(int x, int y) const {
-    return blocks_.Contains(x, y) ? sources_.slot[blocks_.At(x, y)] : -1;
+    const int32_t at = blocks_.Contains(x, y) ? sources_.slot[blocks_.At(x, y)] : -1;
+    return at < 0 || sources_.Of(at)[0].picture == kNoPicture ? -1 : at;
   }
 
   // Of a block's sources, with the seams to the neighbours across the line.
@@ -104,17 +106,9 @@ class SeamChooser {
     if (of_a.picture == of_b.picture || of_a.picture == kNoPicture || of_b.picture == kNoPicture) {
       return 0;
     }
-    const float at_a = Difference(of_a, FindSource(a, of_b.picture));
-    const float at_b = Difference(of_b, FindSource(b, of_a.picture));
+    const float at_a = Difference(of_a, sources_.Find(a, of_b.picture));
+    const float at_b = Difference(of_b, sources_.Find(b, of_a.picture));
     return kSeamCost + 0.5f * kDifferenceCost * (at_a + at_b);
-  }
-
-  const Source* FindSource(int32_t at, uint32_t picture) const {
-    const Source* sources = sources_.Of(at);
-    for (int k = 0; k < kMaxSources; ++k) {
-      if (sources[k].picture == picture) return &sources[k];
-    }
-    return nullptr;
   }
 
   // Of what two pictures show of one block, as a share of its brightness.

@@ -1,6 +1,7 @@
 // Which pictures may colour which part of a map, block by block.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -29,6 +30,13 @@ struct SourceBlocks {
 
   const Source* Of(int32_t at) const { return &sources[static_cast<size_t>(at) * kMaxSources]; }
   Source* Of(int32_t at) { return &sources[static_cast<size_t>(at) * kMaxSources]; }
+  // The picture's place among a slot's sources; nullptr where it is none of them.
+  const Source* Find(int32_t at, uint32_t picture) const {
+    const Source* found = std::find_if(Of(at), Of(at) + kMaxSources, [&](const Source& source) {
+      return source.picture == picture;
+    });
+    return found == Of(at) + kMaxSources ? nullptr : found;
+  }
   size_t NumSlots() const { return sources.size() / kMaxSources; }
   // The block's chosen picture; kNoPicture where there is none.
   uint32_t PictureOf(size_t block) const {

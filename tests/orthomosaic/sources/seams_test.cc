@@ -9,14 +9,32 @@ namespace {
 
 constexpr auto kAlike = [](uint32_t, const Eigen::Vector2d&, size_t) { return 1.0; };
 
-int NumSeams(const BlockRelief& blocks, const SourceBlocks& sources) {
+// From column `first` on.
+int NumSeams(const BlockRelief& blocks, const SourceBlocks& sources, int first = 0) {
   int count = 0;
   for (int y = 0; y < blocks.height; ++y) {
-    for (int x = 1; x < blocks.width; ++x) {
+    for (int x = first + 1; x < blocks.width; ++x) {
       count += sources.PictureOf(blocks.At(x, y)) != sources.PictureOf(blocks.At(x - 1, y));
     }
   }
   return count;
+}
+
+// Where costs are noisy, as if there were no seams to care for.
+SourceBlocks NoisySources(const SourceWorld& world) {
+  SourceBlocks sources = world.Sources(kAlike);
+  uint32_t state = 1;
+  for (Source& source : sources.sources) {
+    state = state * 1664525 + 1013904223;
+    source.cost += 0.15f * static_cast<float>(state >> 16) / 65536;
+  }
+  for (size_t i = 0; i < sources.NumSlots(); ++i) {
+    const Source* list = sources.Of(static_cast<int32_t>(i));
+    for (uint8_t k = 1; k < kMaxSources && list[k].picture != kNoPicture; ++k) {
+      if (list[k].cost < list[sources.choice[i]].cost) sources.choice[i] = k;
+    }
+  }
+  return sources;
 }
 
 TEST(SourceBlocks, TheNearestPictureIsTheCheapestOnFlatGround) {
@@ -53,19 +71,8 @@ TEST(SourceBlocks, AreTheSameForAnyNumberOfThreads) {
 
 TEST(Seams, NoiseInTheCostsMakesNoIslands) {
   const SourceWorld world(8, 40, 40);
-  SourceBlocks sources = world.Sources(kAlike);
-  uint32_t state = 1;
-  for (Source& source : sources.sources) {
-    state = state * 1664525 + 1013904223;
-    source.cost += 0.15f * static_cast<float>(state >> 16) / 65536;
-  }
+  SourceBlocks sources = NoisySources(world);
   const BlockRelief& blocks = world.GetRelief().Blocks();
-  for (size_t i = 0; i < sources.NumSlots(); ++i) {  // as if there were no seams to care for
-    const Source* list = sources.Of(static_cast<int32_t>(i));
-    for (uint8_t k = 1; k < kMaxSources && list[k].picture != kNoPicture; ++k) {
-      if (list[k].cost < list[sources.choice[i]].cost) sources.choice[i] = k;
-    }
-  }
   const int before = NumSeams(blocks, sources);
   const Exposure exposure = EqualExposure(8);
   ChooseSources(blocks, exposure, 1, &sources);
@@ -75,6 +82,35 @@ TEST(Seams, NoiseInTheCostsMakesNoIslands) {
   const std::vector<uint8_t> choice = sources.choice;
   ChooseSources(blocks, exposure, 4, &sources);
   EXPECT_EQ(sources.choice, choice);
+}
+
+// A cross of them lies in the map, three blocks broad, so that every line meets them.
+TEST(Seams, GoOnBehindBlocksThatNoPictureColours) {
+  const SourceWorld world(8, 40, 40);
+  const BlockRelief& blocks = world.GetRelief().Blocks();
+  SourceBlocks whole = NoisySources(world);
+  for (size_t i = 0; i < whole.NumSlots(); ++i) {
+    Source* list = whole.Of(static_cast<int32_t>(i));
+    std::stable_sort(list, list + kMaxSources, [](const Source& a, const Source& b) {
+      return a.picture != kNoPicture && (b.picture == kNoPicture || a.cost < b.cost);
+    });
+    whole.choice[i] = 0;
+  }
+  SourceBlocks broken = whole;
+  const auto is_cross = [](int x, int y) { return std::abs(x - 11) <= 1 || std::abs(y - 11) <= 1; };
+  for (int y = 0; y < blocks.height; ++y) {
+    for (int x = 0; x < blocks.width; ++x) {
+      const int32_t at = broken.slot[blocks.At(x, y)];
+      if (is_cross(x, y)) std::fill_n(broken.Of(at), kMaxSources, Source());
+    }
+  }
+  const int before = NumSeams(blocks, whole, 13);
+  for (SourceBlocks* sources : {&whole, &broken}) {
+    ChooseSources(blocks, EqualExposure(8), 1, sources);
+  }
+  const int after = NumSeams(blocks, whole, 13);
+  ASSERT_LT(after, before);
+  EXPECT_LE(NumSeams(blocks, broken, 13), after + 10);
 }
 
 // Something stands in column 20 of the map, and looks different in every picture.
