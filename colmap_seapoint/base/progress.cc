@@ -29,6 +29,7 @@ Clock::time_point last_word = Clock::now();  // on stderr, of whatever kind
 std::mutex parts_mutex;
 std::vector<const Progress*> parts;
 std::atomic<WorkObserver*> observer{nullptr};
+std::mutex observer_mutex;  // held while the heartbeat asks the observer, which may be leaving
 const Clock::time_point program_start = Clock::now();
 
 bool IsEnabled(LogLevel level) { return static_cast<int>(level) <= log_level.load(); }
@@ -106,9 +107,21 @@ bool HasSomethingToCount() {
   return observer != nullptr || !parts.empty();
 }
 
-// What is said where nobody has asked for it. A part that has ended leaves silence behind it, too.
+// Seconds of silence after which something is said where nobody has asked for it.
+double LongestSilence() {
+  if (IsTerminal()) return kRewriteBeatSeconds;
+  std::lock_guard<std::mutex> lock(observer_mutex);
+  WorkObserver* const all = observer;
+  return all != nullptr ? std::min(all->SecondsBetweenLines(), kMaxSilenceSeconds)
+                        : kMaxSilenceSeconds;
+}
+
+// What is said then. A part that has ended leaves silence behind it, too.
 std::string PresentLine() {
-  if (WorkObserver* const all = observer) return all->Line();
+  {
+    std::lock_guard<std::mutex> lock(observer_mutex);
+    if (WorkObserver* const all = observer) return all->Line();
+  }
   std::lock_guard<std::mutex> lock(parts_mutex);
   if (!parts.empty()) return parts.back()->Line();
   return "Working since " + DurationText(Seconds(Clock::now() - program_start));
@@ -118,11 +131,7 @@ std::string PresentLine() {
 // rewriting line is old.
 void ShowIfSilent() {
   if (!IsEnabled(LogLevel::kInfo)) return;
-  WorkObserver* const all = observer;
-  const double plain = all != nullptr ? std::min(all->SecondsBetweenLines(), kMaxSilenceSeconds)
-                                      : kMaxSilenceSeconds;
-  const double longest = IsTerminal() ? kRewriteBeatSeconds : plain;
-  if (SecondsOfSilence() < longest) return;
+  if (SecondsOfSilence() < LongestSilence()) return;
   if (IsTerminal() && !HasSomethingToCount()) return;
   ShowLine(PresentLine());
 }
@@ -171,7 +180,10 @@ std::string DurationText(double seconds) {
   return text;
 }
 
-void SetWorkObserver(WorkObserver* of_all_work) { observer = of_all_work; }
+void SetWorkObserver(WorkObserver* of_all_work) {
+  std::lock_guard<std::mutex> lock(observer_mutex);
+  observer = of_all_work;
+}
 
 Progress::Progress(const std::string& label, int64_t total, int64_t already_done, Work work)
     : label_(label),

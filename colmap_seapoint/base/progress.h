@@ -33,7 +33,7 @@ std::string DurationText(double seconds);
 // One counted part of the work. On a terminal a single line is rewritten; elsewhere a plain line
 // appears when it tells something new: at least 10 s after the last one, and 10 % further. Where
 // the whole job is observed (work.h), the line is the observer's. While a Heartbeat lives
-// (heartbeat.h), a line also appears where nothing is counted for long.
+// (below), a line also appears where nothing is counted for long.
 class Progress {
  public:
   // `already_done` of `total` were finished by an earlier run: they do not count for the speed.

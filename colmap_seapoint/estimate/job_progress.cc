@@ -10,7 +10,6 @@ namespace {
 
 constexpr double kLinesOfJob = 25;
 constexpr double kMinLineSeconds = 1;
-constexpr double kMaxLineSeconds = 20;
 
 }  // namespace
 
@@ -64,7 +63,7 @@ double JobProgress::SecondsBetweenLines() {
   std::lock_guard<std::mutex> lock(mutex_);
   const double now = Now();
   return std::clamp((now + estimate_.SecondsLeft(now)) / kLinesOfJob, kMinLineSeconds,
-                    kMaxLineSeconds);
+                    kMaxSilenceSeconds);
 }
 
 OfWork<double> JobProgress::Ratios() {

@@ -46,12 +46,12 @@ Needs ExpectedNeeds(const JobSize& size) {
   return needs;
 }
 
-uint64_t FreeDiskBytes(const fs::path& path) {
+std::optional<uint64_t> FreeDiskBytes(const fs::path& path) {
   std::error_code error;
   fs::path there = fs::absolute(path, error);
   while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
   struct statvfs disk {};
-  if (statvfs(there.c_str(), &disk) != 0) return 0;
+  if (statvfs(there.c_str(), &disk) != 0) return std::nullopt;
   return static_cast<uint64_t>(disk.f_bavail) * disk.f_frsize;
 }
 
@@ -72,7 +72,7 @@ std::string NeedsText(const JobSize& size, const Needs& needs, const Supply& sup
                      (size.num_pictures == 1 ? " picture, " : " pictures, ") +
                      std::to_string(std::llround(std::ceil(size.megapixels))) +
                      " megapixels; disk: up to " + BytesText(needs.disk_bytes);
-  if (supply.disk_bytes > 0) text += " of " + BytesText(supply.disk_bytes) + " free";
+  if (supply.disk_bytes) text += " of " + BytesText(*supply.disk_bytes) + " free";
   text += "; memory: about " + BytesText(needs.memory_bytes);
   if (supply.memory_bytes > 0) text += " of " + BytesText(supply.memory_bytes);
   return text;
@@ -101,8 +101,8 @@ std::string TimesText(const OfWork<WorkCost>& costs, const OfWork<bool>& done_be
 }
 
 DiskVerdict JudgeDisk(const Needs& needs, const Supply& supply) {
-  if (supply.disk_bytes == 0) return DiskVerdict::kEnough;
-  const auto there = static_cast<double>(supply.disk_bytes + supply.workspace_bytes);
+  if (!supply.disk_bytes) return DiskVerdict::kEnough;
+  const auto there = static_cast<double>(*supply.disk_bytes + supply.workspace_bytes);
   const auto needed = static_cast<double>(needs.disk_bytes);
   if (there < kLeastShare * needed) return DiskVerdict::kTooSmall;
   return there < needed ? DiskVerdict::kMayBeFilled : DiskVerdict::kEnough;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "colmap_seapoint/estimate/work_costs.h"
@@ -19,13 +20,13 @@ struct Needs {
 Needs ExpectedNeeds(const JobSize& size);
 
 struct Supply {
-  uint64_t disk_bytes = 0;       // that this user may still fill; 0 = the system does not tell
-  uint64_t workspace_bytes = 0;  // that an earlier run has filled there already
-  uint64_t memory_bytes = 0;     // that the job may take
+  std::optional<uint64_t> disk_bytes;  // that this user may still fill; unset: nobody knows
+  uint64_t workspace_bytes = 0;        // that an earlier run has filled there already
+  uint64_t memory_bytes = 0;           // that the job may take
 };
 
-// Of what is there of `path`, or of the nearest folder above it.
-uint64_t FreeDiskBytes(const std::filesystem::path& path);
+// Of what is there of `path`, or of the nearest folder above it; nullopt: the system does not tell.
+std::optional<uint64_t> FreeDiskBytes(const std::filesystem::path& path);
 // Of all files below it; 0 when there is no such folder.
 uint64_t FolderBytes(const std::filesystem::path& path);
 

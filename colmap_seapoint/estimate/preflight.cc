@@ -16,7 +16,7 @@ void CheckDisk(const Needs& needs, const Supply& supply, const std::filesystem::
                bool is_error) {
   const DiskVerdict verdict = JudgeDisk(needs, supply);
   if (verdict == DiskVerdict::kEnough) return;
-  const std::string finding = "the disk has " + BytesText(supply.disk_bytes) +
+  const std::string finding = "the disk has " + BytesText(*supply.disk_bytes) +
                               " free, and this job takes up to " + BytesText(needs.disk_bytes);
   const char* remedy =
       "make room, choose another --workspace_path, or take fewer points by a larger "

@@ -66,12 +66,4 @@ OfWork<WorkCost> ExpectedCosts(const JobSize& size, const OfWork<double>& machin
   return costs;
 }
 
-double TotalSeconds(const OfWork<WorkCost>& costs) {
-  double seconds = 0;
-  for (const WorkCost& cost : costs.values) {
-    seconds += static_cast<double>(cost.count) * cost.seconds_each;
-  }
-  return seconds;
-}
-
 }  // namespace colmap_seapoint

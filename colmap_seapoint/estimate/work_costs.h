@@ -45,7 +45,4 @@ struct WorkCost {
 // this machine's earlier runs have shown (work_history.h), all 1 where there are none.
 OfWork<WorkCost> ExpectedCosts(const JobSize& size, const OfWork<double>& machine);
 
-// Of all work.
-double TotalSeconds(const OfWork<WorkCost>& costs);
-
 }  // namespace colmap_seapoint

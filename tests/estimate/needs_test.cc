@@ -50,7 +50,8 @@ TEST(JudgeDisk, CountsWhatIsThereAlready) {
   EXPECT_EQ(JudgeDisk(needs, {999, 0, 0}), DiskVerdict::kMayBeFilled);
   EXPECT_EQ(JudgeDisk(needs, {299, 0, 0}), DiskVerdict::kTooSmall);
   EXPECT_EQ(JudgeDisk(needs, {299, 701, 0}), DiskVerdict::kEnough);
-  EXPECT_EQ(JudgeDisk(needs, {0, 0, 0}), DiskVerdict::kEnough);  // not known
+  EXPECT_EQ(JudgeDisk(needs, {0, 0, 0}), DiskVerdict::kTooSmall);
+  EXPECT_EQ(JudgeDisk(needs, {std::nullopt, 0, 0}), DiskVerdict::kEnough);
 }
 
 TEST(FreeDiskBytes, OfTheNearestFolderThatIsThere) {
