@@ -32,11 +32,11 @@ struct PairsToMatch {
 
 PairsToMatch FindPairsToMatch(const std::vector<ImagePair>& pairs, const std::string& asked,
                               const ColmapDatabase& database) {
+  const std::set<ImagePair> otherwise = PairsMatchedOtherwise(database, asked);
   PairsToMatch found;
   for (const ImagePair& pair : pairs) {
     if (HasMatches(database, pair)) {
-      const std::string matching = MatchingOf(database, pair);
-      if (matching.empty() || matching == asked) continue;
+      if (otherwise.count(std::minmax(pair.first, pair.second)) == 0) continue;
       ++found.num_again;
     }
     found.pairs.push_back(pair);

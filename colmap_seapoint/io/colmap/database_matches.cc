@@ -246,12 +246,19 @@ std::vector<ImagePair> ReadTriedPairs(const ColmapDatabase& database) {
   return ReadPairs(database, "(rows <> 0 OR config <> 0)");
 }
 
-std::string MatchingOf(const ColmapDatabase& database, ImagePair pair) {
+std::set<ImagePair> PairsMatchedOtherwise(const ColmapDatabase& database,
+                                          const std::string& fingerprint) {
   const SqlConnection& db = database.Connection();
-  if (!HasColumn(db, kMatchingTable, "fingerprint")) return "";
-  SqlStatement row(db, "SELECT fingerprint FROM seapoint_matching WHERE pair_id = ?");
-  row.Bind(PairId(pair));
-  return row.Step() ? row[0].Text() : "";
+  std::set<ImagePair> pairs;
+  if (!HasColumn(db, kMatchingTable, "fingerprint")) return pairs;
+  SqlStatement rows(db,
+                    "SELECT pair_id / ?1, pair_id % ?1 FROM seapoint_matching "
+                    "WHERE fingerprint NOT IN ('', ?2)");
+  rows.Bind(kMaxImageId).Bind(fingerprint);
+  while (rows.Step()) {
+    pairs.emplace(static_cast<uint32_t>(rows[0].Int()), static_cast<uint32_t>(rows[1].Int()));
+  }
+  return pairs;
 }
 
 void NoteMatching(ColmapDatabase* database, ImagePair pair, const std::string& fingerprint) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,9 +25,10 @@ bool HasMatches(const ColmapDatabase& database, ImagePair pair);
 void WriteMatches(ColmapDatabase* database, uint32_t image_id1, uint32_t image_id2,
                   const FeatureMatches& raw, const TwoViewGeometry& geometry);
 
-// What the pair was matched with, as NoteMatching() was told; "" for a pair that others have
-// matched, or a version of ours that noted nothing.
-std::string MatchingOf(const ColmapDatabase& database, ImagePair pair);
+// The pairs of which NoteMatching() was told something else; pairs that others have matched, or a
+// version of ours that noted nothing, are not among them.
+std::set<ImagePair> PairsMatchedOtherwise(const ColmapDatabase& database,
+                                          const std::string& fingerprint);
 // In a table of our own; to be called with the pair's WriteMatches().
 void NoteMatching(ColmapDatabase* database, ImagePair pair, const std::string& fingerprint);
 
