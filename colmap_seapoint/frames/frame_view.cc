@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "colmap_seapoint/base/median.h"
 #include "feature/extract_features.h"
 #include "feature/match_features.h"
 #include "feature/matching/overlap_share.h"
@@ -44,13 +45,6 @@ Similarity Fit(const Points& from, const Points& to) {
   motion.turn /= std::max(norm, 1e-12);
   motion.shift = middle_to - motion.turn * middle_from;
   return motion;
-}
-
-double Quantile(std::vector<double> values, double share) {
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
 }
 
 std::vector<double> Residuals(const Similarity& motion, const Points& from, const Points& to) {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <utility>
 
 #include "colmap_seapoint/georeference/triangulate_target.h"
+#include "colmap_seapoint/markers/detect_markers.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -34,20 +34,12 @@ struct Seen {
   size_t num_elsewhere = 0, num_mirrored = 0;
 };
 
-Eigen::Vector2d DiagonalsMeet(const std::array<Eigen::Vector2d, kNumCorners>& corners) {
-  const auto cross = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return a.x() * b.y() - a.y() * b.x();
-  };
-  const Eigen::Vector2d first = corners[2] - corners[0], second = corners[3] - corners[1];
-  return corners[0] + cross(corners[1] - corners[0], second) / cross(first, second) * first;
-}
-
 View ViewOf(const PosedImage& image, const Camera& camera, const MarkerSighting& sighting) {
   View view{&image, &camera, sighting.corners, {}};
   const Eigen::Array2d factor(static_cast<double>(camera.width) / sighting.width,
                               static_cast<double>(camera.height) / sighting.height);
   for (Eigen::Vector2d& corner : view.corners) corner = corner.array() * factor;
-  view.centre = DiagonalsMeet(view.corners);
+  view.centre = CentreOfSquare(view.corners);
   return view;
 }
 

@@ -93,9 +93,8 @@ auto OrderOf(const DetectedMarker& marker) {
 void DropFalseMirrors(std::vector<DetectedMarker>* markers) {
   const auto first = std::find_if(markers->begin(), markers->end(),
                                   [](const DetectedMarker& marker) { return marker.is_mirrored; });
-  const std::vector<DetectedMarker> real(markers->begin(), first);
   const auto is_false = [&](const DetectedMarker& marker) {
-    return std::any_of(real.begin(), real.end(), [&](const DetectedMarker& other) {
+    return std::any_of(markers->begin(), first, [&](const DetectedMarker& other) {
       return (other.Centre() - marker.Centre()).norm() < kSamePlace;
     });
   };
@@ -104,12 +103,12 @@ void DropFalseMirrors(std::vector<DetectedMarker>* markers) {
 
 }  // namespace
 
-Eigen::Vector2d DetectedMarker::Centre() const {
-  const auto line = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) -> Eigen::Vector3d {
-    return a.homogeneous().cross(b.homogeneous());
+Eigen::Vector2d CentreOfSquare(const std::array<Eigen::Vector2d, 4>& corners) {
+  const auto cross = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return a.x() * b.y() - a.y() * b.x();
   };
-  const Eigen::Vector3d meeting = line(corners[0], corners[2]).cross(line(corners[1], corners[3]));
-  return meeting.hnormalized();
+  const Eigen::Vector2d first = corners[2] - corners[0], second = corners[3] - corners[1];
+  return corners[0] + cross(corners[1] - corners[0], second) / cross(first, second) * first;
 }
 
 std::vector<DetectedMarker> DetectMarkers(const GrayImage& picture,

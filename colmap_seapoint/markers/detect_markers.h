@@ -15,12 +15,15 @@ namespace colmap_seapoint {
 // Raise it whenever the same picture gives other markers than before.
 inline constexpr char kMarkerVersion[] = "2";
 
+// Where the diagonals of a square meet, in whatever perspective it is seen.
+Eigen::Vector2d CentreOfSquare(const std::array<Eigen::Vector2d, 4>& corners);
+
 struct DetectedMarker {
   MarkerName name;
   // The corners of the black square, pixels (the first pixel's centre is 0.5, 0.5), one after the
   // other around it. The first one is always the same corner of the print.
   std::array<Eigen::Vector2d, 4> corners;
-  Eigen::Vector2d Centre() const;  // of the square, by its diagonals
+  Eigen::Vector2d Centre() const { return CentreOfSquare(corners); }
   // The print is the marker's mirror image: a transparency the wrong way round, or a sign that was
   // flipped in a drawing program. Its place is right, but whoever measured it may mean another one.
   bool is_mirrored = false;
@@ -34,8 +37,5 @@ struct DetectedMarker {
 // of memory.
 std::vector<DetectedMarker> DetectMarkers(const GrayImage& picture,
                                           const std::vector<MarkerFamily>& families);
-
-// What one pixel of a picture takes while its markers are looked for, bytes.
-inline constexpr int kMarkerBytesPerPixel = 12;
 
 }  // namespace colmap_seapoint

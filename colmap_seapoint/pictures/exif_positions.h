@@ -35,6 +35,8 @@ std::vector<PictureTime> TimesFromExif(const std::vector<ReadablePicture>& pictu
 struct PictureRecords {
   ExifPositions gps;
   std::vector<PictureTime> times;
+  // Whether it says anything, be it that it cannot be used.
+  bool HasGps() const { return !gps.positions.positions.empty() || !gps.problem.empty(); }
 };
 
 PictureRecords RecordsFromExif(const std::vector<ReadablePicture>& pictures);

@@ -22,7 +22,8 @@ Found FindIn(const std::filesystem::path& path, const std::vector<MarkerFamily>&
   Found found;
   try {
     const PictureFile file(path);
-    const MemoryShare share(kMarkerBytesPerPixel * file.BytesToDecode());
+    // The search takes twice what decoding does.
+    const MemoryShare share(3 * file.BytesToDecode());
     const GrayImage picture = file.DecodeGray();
     found.width = picture.width;
     found.height = picture.height;

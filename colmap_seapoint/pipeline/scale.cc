@@ -31,17 +31,13 @@ constexpr char kScaleFile[] = "scale.json";
 
 bool NamesFolders(const std::string& rig) { return rig.find(',') != std::string::npos; }
 
-bool HasGps(const PictureRecords& records) {
-  return !records.gps.positions.positions.empty() || !records.gps.problem.empty();
-}
-
 void Validate(const ModelScalerOptions& options, const PictureRecords& records) {
   const ScaleSources& sources = options.sources;
   for (const std::string& problem : {sources.Check(), CheckRig(options.rig)}) {
     if (!problem.empty()) throw UsageError(problem);
   }
   if (!sources.Any() && (sources.DeclinesPositions() ||
-                         (!HasGps(records) && !fs::is_directory(options.image_path)))) {
+                         (!records.HasGps() && !fs::is_directory(options.image_path)))) {
     throw UsageError(
         "nothing says how large the model is: give --scale_bars_path, --positions_path, --nav, "
         "--marker_size or --rig_spacing, or the --image_path of pictures with GPS");
@@ -85,7 +81,8 @@ void ClaimOutputs(const ModelScalerOptions& options, OutputFolder* folder) {
                    "choose another --report_path, or remove the file");
 }
 
-// Of every picture of the dive: those of other models tell why a bar is not in this one.
+// A table holds every picture of the dive: those of other models tell why a bar is not in this one.
+// Without one the model's own pictures are looked through.
 std::vector<MarkerSighting> SightingsFor(const ModelScalerOptions& options,
                                          const SparseModel& model, RunReport* report) {
   const std::vector<MarkerFamily> families = FamiliesToFind(options.sources);

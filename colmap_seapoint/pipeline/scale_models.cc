@@ -32,10 +32,6 @@ std::string RecordsText(const PictureRecords& records) {
   return HashText(text.str());
 }
 
-bool HasGps(const PictureRecords& records) {
-  return !records.gps.positions.positions.empty() || !records.gps.problem.empty();
-}
-
 std::string Inputs(const ModelScalerOptions& scaler, const PictureRecords& records,
                    const std::string& mapper_fingerprint) {
   const ScaleSources& sources = scaler.sources;
@@ -126,7 +122,7 @@ RunReport ScaleAllModels(ModelScalerOptions scaler, const PictureRecords& record
                          WorkspaceState* state, std::vector<ModelSummary>* models) {
   RunReport report;
   const bool has_sources =
-      scaler.sources.Any() || (HasGps(records) && !scaler.sources.DeclinesPositions());
+      scaler.sources.Any() || (records.HasGps() && !scaler.sources.DeclinesPositions());
   RemoveStaleStages("scale_", has_sources ? models->size() : 0, workspace.scaled, state);
   if (!has_sources) {
     std::error_code ignored;

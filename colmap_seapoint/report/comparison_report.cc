@@ -1,11 +1,11 @@
 #include "colmap_seapoint/report/comparison_report.h"
 
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "colmap_seapoint/base/version.h"
 #include "colmap_seapoint/compare/comparison_scores.h"
+#include "colmap_seapoint/report/format_text.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -96,36 +96,28 @@ Json HolesJson(const CloudComparison& c) {
   return json;
 }
 
-// One row of the table, by printf's rules.
-template <typename... Values>
-std::string Line(const char* format, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof(text), format, values...);
-  return text;
-}
-
 std::string ScoreRows(const char* name, const CloudComparison& c,
                       ComparisonScores (*scores_at)(const CloudComparison&, size_t)) {
   std::string rows;
   for (size_t k = 0; k < c.distances.size(); ++k) {
     const ComparisonScores scores = scores_at(c, k);
-    rows += Line("%-18s %12.6g %10.4f %13.4f %9.4f\n", k == 0 ? name : "", c.distances[k],
-                 scores.accuracy, scores.completeness, scores.f_score);
+    rows += Format("%-18s %12.6g %10.4f %13.4f %9.4f\n", k == 0 ? name : "", c.distances[k],
+                   scores.accuracy, scores.completeness, scores.f_score);
   }
   return rows;
 }
 
 std::string CloudRow(const char* name, const OneWay& way, bool in_metres) {
   const double points = static_cast<double>(way.num_points);
-  return Line("%-10s %12llu %12.6g %12.6g %12.6g %10.3f\n", name,
-              static_cast<unsigned long long>(way.num_points), way.spacing, way.area,
-              points / (in_metres ? 1e4 * way.area : way.area),
-              points / static_cast<double>(way.num_cells));
+  return Format("%-10s %12llu %12.6g %12.6g %12.6g %10.3f\n", name,
+                static_cast<unsigned long long>(way.num_points), way.spacing, way.area,
+                points / (in_metres ? 1e4 * way.area : way.area),
+                points / static_cast<double>(way.num_cells));
 }
 
 std::string DistanceRow(const char* name, const OneWay& way) {
-  return Line("%-20s %12.6g %12.6g %12.6g %12llu\n", name, way.mean, way.median, way.rms,
-              static_cast<unsigned long long>(way.num_beyond));
+  return Format("%-20s %12.6g %12.6g %12.6g %12llu\n", name, way.mean, way.median, way.rms,
+                static_cast<unsigned long long>(way.num_beyond));
 }
 
 }  // namespace
@@ -158,19 +150,19 @@ std::string ComparisonJson(const ComparisonReport& report) {
 std::string ComparisonTable(const ComparisonReport& report) {
   const CloudComparison& c = report.comparison;
   std::string table =
-      Line("%-10s %12s %12s %12s %12s %10s\n", "cloud", "points", "spacing", "area",
-           report.unit_in_metres ? "per cm^2" : "per unit^2", "a cell") +
+      Format("%-10s %12s %12s %12s %12s %10s\n", "cloud", "points", "spacing", "area",
+             report.unit_in_metres ? "per cm^2" : "per unit^2", "a cell") +
       CloudRow("input", c.input, report.unit_in_metres) +
       CloudRow("reference", c.reference, report.unit_in_metres) +
-      Line("\n%-20s %12s %12s %12s %12s\n", "distance", "mean", "median", "rms", "beyond") +
+      Format("\n%-20s %12s %12s %12s %12s\n", "distance", "mean", "median", "rms", "beyond") +
       DistanceRow("input to reference", c.input) + DistanceRow("reference to input", c.reference) +
-      Line("\n%-18s %12s %10s %13s %9s\n", "", "within", "accuracy", "completeness", "F-score") +
+      Format("\n%-18s %12s %10s %13s %9s\n", "", "within", "accuracy", "completeness", "F-score") +
       ScoreRows("points", c, PointScores) + ScoreRows("ETH3D", c, Eth3dScores) +
       ScoreRows("Tanks and Temples", c, TanksScores) +
-      Line("\n%-18s %12s %14s %14s\n", "", "farther than", "hole area", "excess area");
+      Format("\n%-18s %12s %14s %14s\n", "", "farther than", "hole area", "excess area");
   for (size_t k = 0; k < c.distances.size(); ++k) {
-    table += Line("%-18s %12.6g %14.6g %14.6g\n", "", c.distances[k], c.reference.at[k].far_area,
-                  c.input.at[k].far_area);
+    table += Format("%-18s %12.6g %14.6g %14.6g\n", "", c.distances[k], c.reference.at[k].far_area,
+                    c.input.at[k].far_area);
   }
   return table;
 }

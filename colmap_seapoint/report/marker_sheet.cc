@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "colmap_seapoint/markers/marker_codes.h"
+#include "colmap_seapoint/report/format_text.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -14,13 +14,6 @@ constexpr double kCaption = 16;  // height of the room for names and the ruler
 constexpr double kGlue = 10;     // of a page of a bar that goes below the next one
 constexpr double kPageOfBar = kA4Long - 2 * kMargin - kGlue;
 constexpr double kMaxRuler = 150;
-
-template <typename... Values>
-std::string Format(const char* format, Values... values) {
-  char text[200];
-  std::snprintf(text, sizeof(text), format, values...);
-  return text;
-}
 
 // A cell's white margin on each side: a fifth more than the cell, so that scissors may slip.
 double QuietZone(const MarkerSheetOptions& options) {
@@ -152,10 +145,10 @@ std::string CheckMarkerSheet(const MarkerSheetOptions& options) {
     return Format("bar_length must be %.3f or more: its markers would lie one on the other",
                   board / 1000);
   }
-  const double part = StripLength(options) / PagesOfBar(options);
-  if (part >= board && board <= kA4Short - 2 * kMargin - 60) return "";
-  return Format("size must be smaller, or bar_length another: a sheet of this bar is %.0f mm long",
-                part);
+  constexpr double kMaxBoardOfBar = kA4Short - 2 * kMargin - 60;
+  if (board <= kMaxBoardOfBar) return "";
+  return Format("size must be %.3f or less: A4 holds no larger marker of a bar",
+                kMaxBoardOfBar / board * options.size_mm / 1000);
 }
 
 std::vector<PdfPage> MarkerSheet(const MarkerSheetOptions& options) {

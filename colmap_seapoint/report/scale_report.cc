@@ -1,12 +1,12 @@
 #include "colmap_seapoint/report/scale_report.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/csv_table.h"
+#include "colmap_seapoint/report/format_text.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -15,13 +15,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr size_t kMaxRows = 20;
 constexpr size_t kMaxNamedOutliers = 3;
-
-template <typename... Values>
-std::string Format(const char* format, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof(text), format, values...);
-  return text;
-}
 
 size_t Count(const std::vector<bool>& used) {
   return static_cast<size_t>(std::count(used.begin(), used.end(), true));

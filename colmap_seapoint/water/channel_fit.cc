@@ -226,13 +226,6 @@ Parameters Descend(const Problem& problem, Parameters p) {
   return p;
 }
 
-double Percentile(std::vector<double> values, double share) {
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 double SigmaOfAttenuation(const Problem& problem, const Parameters& p) {
   Eigen::Matrix4d normal;
   Eigen::Vector4d right;
@@ -245,7 +238,7 @@ double SigmaOfAttenuation(const Problem& problem, const Parameters& p) {
 }  // namespace
 
 ChannelFit FitChannel(const ChannelSamples& samples, std::optional<double> falloff) {
-  const double darkest = std::max(0.0, Percentile(samples.light, 0.05));
+  const double darkest = std::max(0.0, Quantile(samples.light, 0.05));
   ChannelFit best;
   double best_noise = 0, best_cost = std::numeric_limits<double>::infinity();
   for (const double rate : kStarts) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "colmap_seapoint/markers/detect_markers.h"
 #include "examples/survey/visibility.h"
 
 namespace colmap_seapoint {
@@ -16,14 +17,6 @@ namespace {
 constexpr double kSamePlace = 3;
 
 using Key = std::pair<std::string, std::string>;  // marker, picture
-
-Eigen::Vector2d Centre(const MarkerSighting& sighting) {
-  const Eigen::Vector2d a = sighting.corners[2] - sighting.corners[0],
-                        b = sighting.corners[3] - sighting.corners[1],
-                        c = sighting.corners[1] - sighting.corners[0];
-  const double cross = a.x() * b.y() - a.y() * b.x();
-  return sighting.corners[0] + (c.x() * b.y() - c.y() * b.x()) / cross * a;
-}
 
 // The side of the black square in the picture, pixels; nullopt where it does not show all of it.
 std::optional<double> WholeSide(const SurfaceVisibility& visibility, size_t image_idx,
@@ -64,7 +57,7 @@ MarkerScore ScoreMarkers(const SurveyTruth& truth, const std::vector<MarkerSight
       bool is_found = false;
       const auto range = found.equal_range({MarkerText(board.name), image.name});
       for (auto it = range.first; it != range.second && centre; ++it) {
-        const double error = (Centre(*it->second) - *centre).norm();
+        const double error = (CentreOfSquare(it->second->corners) - *centre).norm();
         if (it->second->is_mirrored || error > kSamePlace || is_found) continue;
         is_found = true;
         square += error * error;

@@ -6,7 +6,7 @@
 
 #include "colmap_seapoint/georeference/marker_search.h"
 #include "colmap_seapoint/georeference/scale_measurements.h"
-#include "tests/io/test_files.h"
+#include "tests/georeference/five_cameras.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -14,21 +14,9 @@ namespace {
 constexpr double kSide = 0.1;
 
 // Five cameras in a row, 0.4 units apart, that look at the plane z = 2.
-class MarkerPlaces : public testing::Test {
+class MarkerPlaces : public FiveCameras {
  protected:
-  MarkerPlaces() {
-    Camera camera = MakeCamera(CameraModel::kPinhole, 1000, 1200, 900);
-    camera.camera_id = 1;
-    model_.cameras[1] = camera;
-    for (uint32_t i = 0; i < 5; ++i) {
-      PosedImage image;
-      image.image_id = i + 1;
-      image.camera_id = 1;
-      image.name = "img" + std::to_string(i + 1) + ".jpg";
-      image.cam_from_world.translation = {0.8 - 0.4 * i, 0, 0};
-      model_.images.push_back(image);
-    }
-  }
+  MarkerPlaces() : FiveCameras([](uint32_t i) { return Eigen::Vector3d(0.4 * i - 0.8, 0, 0); }) {}
 
   // Seen by these pictures (from 1), its corners turned and moved by `error` pixels in turn.
   void See(const std::string& marker, const Eigen::Vector3d& centre,
@@ -54,20 +42,9 @@ class MarkerPlaces : public testing::Test {
     return PlaceMarkers(model_, sightings_, 4).at({MarkerFamily::kTag36h11, id});
   }
 
-  std::string Table(const std::string& name, const std::string& text) {
-    WriteBytes(dir_ / name, text);
-    return (dir_ / name).string();
-  }
-
   ScaleMeasurements Gather() {
     return GatherMeasurements(model_, sources_, sightings_, {}, 1, &report_);
   }
-
-  TempDir dir_;
-  SparseModel model_;
-  std::vector<MarkerSighting> sightings_;
-  ScaleSources sources_;
-  RunReport report_;
 };
 
 TEST_F(MarkerPlaces, ExactSightingsGiveTheExactPlaceAndSide) {

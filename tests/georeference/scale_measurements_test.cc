@@ -5,27 +5,16 @@
 #include <cmath>
 #include <cstdio>
 
-#include "tests/io/test_files.h"
+#include "tests/georeference/five_cameras.h"
 
 namespace colmap_seapoint {
 namespace {
 
 // Five cameras in a row, 0.5 model units apart, that look down on targets 2 units below; in the
 // model, z points down.
-class Measurements : public testing::Test {
+class Measurements : public FiveCameras {
  protected:
-  Measurements() {
-    Camera camera = MakeCamera(CameraModel::kPinhole, 1000, 1200, 900);
-    camera.camera_id = 1;
-    model_.cameras[1] = camera;
-    for (uint32_t i = 0; i < 5; ++i) {
-      PosedImage image;
-      image.image_id = i + 1;
-      image.camera_id = 1;
-      image.name = "img" + std::to_string(i + 1) + ".jpg";
-      image.cam_from_world.translation = -CenterOf(i);
-      model_.images.push_back(image);
-    }
+  Measurements() : FiveCameras(CenterOf) {
     model_.points3D[7].xyz = {0, 0, 2};
     model_.points3D[8].xyz = {0.3, 0.4, 2};
   }
@@ -48,20 +37,9 @@ class Measurements : public testing::Test {
     return lines;
   }
 
-  std::string Table(const std::string& name, const std::string& text) {
-    WriteBytes(dir_ / name, text);
-    return (dir_ / name).string();
-  }
-
   ScaleMeasurements Gather(const StereoRig& rig = {}) {
     return GatherMeasurements(model_, sources_, sightings_, rig, 5, &report_);
   }
-
-  TempDir dir_;
-  SparseModel model_;
-  ScaleSources sources_;
-  std::vector<MarkerSighting> sightings_;
-  RunReport report_;
 };
 
 TEST_F(Measurements, NamesAreCheckedAgainstThePictures) {

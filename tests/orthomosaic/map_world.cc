@@ -11,14 +11,6 @@ namespace {
 
 constexpr double kDepth = 2, kTableDepth = 1.7, kSpacing = 0.0064;
 
-template <typename T>
-void Paste(const Image<T>& tile, int x, int y, Image<T>* whole) {
-  for (int row = 0; row < tile.height; ++row) {
-    std::copy(tile.Row(row), tile.Row(row) + tile.Stride(),
-              whole->Row(y + row) + static_cast<size_t>(x * tile.channels));
-  }
-}
-
 World TableWorld() {
   return World(
       {{{0, 0, kDepth}, {20, 0, 0}, {0, 20, 0}}, {{0, 0, kTableDepth}, {0.2, 0, 0}, {0, 0.15, 0}}},
@@ -55,23 +47,6 @@ void WriteCloud(const MapWorld& world) {
 }
 
 }  // namespace
-
-void MapInMemory::Begin(const MapFrame& map_frame, const MapGrid& map_grid) {
-  ++num_begins;
-  frame = map_frame;
-  grid = map_grid;
-  whole.relief = FloatImage(grid.width, grid.height, 1, kNoHeight);
-  whole.rgba = Image<uint8_t>(grid.width, grid.height, 4);
-  whole.source = Image<int32_t>(grid.width, grid.height, 1, kNoSource);
-  whole.surface = Image<uint8_t>(grid.width, grid.height);
-}
-
-void MapInMemory::Take(MapTile&& tile) {
-  Paste(tile.relief, tile.x, tile.y, &whole.relief);
-  Paste(tile.rgba, tile.x, tile.y, &whole.rgba);
-  Paste(tile.source, tile.x, tile.y, &whole.source);
-  Paste(tile.surface, tile.x, tile.y, &whole.surface);
-}
 
 std::vector<Viewpoint> MapWorld::Viewpoints() const {
   std::vector<Viewpoint> viewpoints;

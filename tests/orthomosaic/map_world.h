@@ -8,19 +8,19 @@
 
 #include "colmap_seapoint/base/sparse_model.h"
 #include "colmap_seapoint/orthomosaic/orthomosaic.h"
+#include "examples/benchmarks/map/memory_map.h"
 #include "tests/io/test_files.h"
 #include "tests/synthetic/world.h"
 
 namespace colmap_seapoint {
 
 // A whole map, for tests that look at all of it.
-struct MapInMemory : MapTileSink {
-  void Begin(const MapFrame& map_frame, const MapGrid& map_grid) override;
-  void Take(MapTile&& tile) override;
+struct MapInMemory : MemoryMap {
+  void Begin(const MapFrame& frame, const MapGrid& grid) override {
+    ++num_begins;
+    MemoryMap::Begin(frame, grid);
+  }
 
-  MapFrame frame;
-  MapGrid grid;
-  MapTile whole;
   int num_begins = 0;
 };
 

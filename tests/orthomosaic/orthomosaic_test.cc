@@ -31,13 +31,13 @@ class OrthomosaicTest : public testing::Test {
 
   // The upper surface below a place of the map, pixels; the world's z is away from the cameras.
   Eigen::Vector3d TruthAt(const MapWorld& world, double column, double row) const {
-    const Rigid3d world_from_map = map_.frame.map_from_cloud.Inverse();
-    const Eigen::Vector2d place = map_.grid.PlaceOf(column, row);
+    const Rigid3d world_from_map = map_.Frame().map_from_cloud.Inverse();
+    const Eigen::Vector2d place = map_.Grid().PlaceOf(column, row);
     return *world.world.Cast(world_from_map * Eigen::Vector3d(place.x(), place.y(), 10),
                              world_from_map.rotation * -Eigen::Vector3d::UnitZ());
   }
 
-  bool HasColor(int x, int y) const { return map_.whole.rgba.At(x, y, 3) != 0; }
+  bool HasColor(int x, int y) const { return map_.Whole().rgba.At(x, y, 3) != 0; }
 
   std::string ErrorOf(const OrthomosaicInputs& inputs, const OrthomosaicOptions& options = {}) {
     try {
@@ -78,23 +78,23 @@ TEST_F(OrthomosaicTest, IsTrueInPlanAndHeightAndMakesNothingUp) {
   EXPECT_EQ(summary.pictures_used.size(), 6u);
   EXPECT_EQ(summary.num_picture_reads, 6u);
   EXPECT_EQ(map_.num_begins, 1);
-  FloatImage truth(map_.grid.width, map_.grid.height);
-  ColorImage red(map_.grid.width, map_.grid.height, 1);
+  FloatImage truth(map_.Grid().width, map_.Grid().height);
+  ColorImage red(map_.Grid().width, map_.Grid().height, 1);
   std::vector<double> height_errors;
   for (int y = 0; y < truth.height; ++y) {
     for (int x = 0; x < truth.width; ++x) {
       const Eigen::Vector3d place = TruthAt(world, x + 0.5, y + 0.5);
       truth.At(x, y) = static_cast<float>(world.world.ColorAt(place)[0]);
-      red.At(x, y) = map_.whole.rgba.At(x, y, 0);
-      EXPECT_EQ(HasColor(x, y), map_.whole.source.At(x, y) != kNoSource);
-      EXPECT_EQ(map_.whole.surface.At(x, y) != 0, !std::isnan(map_.whole.relief.At(x, y)));
+      red.At(x, y) = map_.Whole().rgba.At(x, y, 0);
+      EXPECT_EQ(HasColor(x, y), map_.Whole().source.At(x, y) != kNoSource);
+      EXPECT_EQ(map_.Whole().surface.At(x, y) != 0, !std::isnan(map_.Whole().relief.At(x, y)));
       // The cloud ends there: nothing may go on.
       if (place.x() > 0.9 + 2 * world.gsd) {
-        EXPECT_EQ(map_.whole.surface.At(x, y), 0);
+        EXPECT_EQ(map_.Whole().surface.At(x, y), 0);
       }
-      if (map_.whole.surface.At(x, y) == 0) continue;
-      const double height = (map_.frame.map_from_cloud * place).z();
-      height_errors.push_back(std::abs(height - double{map_.whole.relief.At(x, y)}) / world.gsd);
+      if (map_.Whole().surface.At(x, y) == 0) continue;
+      const double height = (map_.Frame().map_from_cloud * place).z();
+      height_errors.push_back(std::abs(height - double{map_.Whole().relief.At(x, y)}) / world.gsd);
     }
   }
   std::sort(height_errors.begin(), height_errors.end());
@@ -123,16 +123,16 @@ TEST_F(OrthomosaicTest, ColoursWhatTheCloudCoversAndFlagsTheTable) {
   const OrthomosaicSummary summary = Make(world);
   uint64_t num_points = 0, num_colored = 0, num_overhang = 0, num_table = 0;
   for (const CloudPoint& point : ReadCloud(world.cloud_path)) {
-    const Eigen::Vector3d in_map = map_.frame.map_from_cloud * point.xyz.cast<double>();
-    const Eigen::Vector2d pixel = map_.grid.PixelOf(in_map.x(), in_map.y());
+    const Eigen::Vector3d in_map = map_.Frame().map_from_cloud * point.xyz.cast<double>();
+    const Eigen::Vector2d pixel = map_.Grid().PixelOf(in_map.x(), in_map.y());
     if ((TruthAt(world, pixel.x(), pixel.y()) - point.xyz.cast<double>()).norm() > 1e-3) continue;
     ++num_points;
     num_colored += HasColor(static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
   }
   EXPECT_GE(static_cast<double>(num_colored), 0.99 * static_cast<double>(num_points));
-  for (int y = 0; y < map_.grid.height; ++y) {
-    for (int x = 0; x < map_.grid.width; ++x) {
-      const bool is_flagged = (map_.whole.surface.At(x, y) & kOverhang) != 0;
+  for (int y = 0; y < map_.Grid().height; ++y) {
+    for (int x = 0; x < map_.Grid().width; ++x) {
+      const bool is_flagged = (map_.Whole().surface.At(x, y) & kOverhang) != 0;
       const Eigen::Vector3d place = TruthAt(world, x + 0.5, y + 0.5);
       const bool is_table = place.z() < 1.8;
       const double beside = std::max(std::abs(place.x()) - 0.2, std::abs(place.y()) - 0.15);
@@ -156,13 +156,13 @@ TEST_F(OrthomosaicTest, TheTableCastsNoGhost) {
   options.balance = false;
   Make(world, options);
   int num_wrong = 0, num_near = 0;
-  for (int y = 0; y < map_.grid.height; ++y) {
-    for (int x = 0; x < map_.grid.width; ++x) {
+  for (int y = 0; y < map_.Grid().height; ++y) {
+    for (int x = 0; x < map_.Grid().width; ++x) {
       const Eigen::Vector3d place = TruthAt(world, x + 0.5, y + 0.5);
       const double beside = std::max(std::abs(place.x()) - 0.2, std::abs(place.y()) - 0.15);
       if (!HasColor(x, y) || beside < 0.016 || beside > 0.15) continue;
       ++num_near;
-      num_wrong += std::abs(map_.whole.rgba.At(x, y, 0) - world.world.ColorAt(place)[0]) > 40;
+      num_wrong += std::abs(map_.Whole().rgba.At(x, y, 0) - world.world.ColorAt(place)[0]) > 40;
     }
   }
   ASSERT_GT(num_near, 2000);
@@ -174,14 +174,15 @@ TEST_F(OrthomosaicTest, SeamsAreNoStepsWhereExposureChanges) {
   const auto steps = [&] {  // at seams, over what the world's own are there
     double across = 0, inside = 0;
     int count = 0;
-    for (int y = 0; y < map_.grid.height; ++y) {
-      for (int x = 1; x + 1 < map_.grid.width; ++x) {
-        const int32_t left = map_.whole.source.At(x - 1, y), right = map_.whole.source.At(x + 1, y);
+    for (int y = 0; y < map_.Grid().height; ++y) {
+      for (int x = 1; x + 1 < map_.Grid().width; ++x) {
+        const int32_t left = map_.Whole().source.At(x - 1, y),
+                      right = map_.Whole().source.At(x + 1, y);
         if (left < 0 || right < 0 || left == right) continue;
         const Eigen::Vector3d a = TruthAt(world, x - 0.5, y + 0.5);
         const Eigen::Vector3d b = TruthAt(world, x + 1.5, y + 0.5);
         if (a.z() != b.z()) continue;  // the table's edge
-        across += std::abs(map_.whole.rgba.At(x + 1, y, 1) - map_.whole.rgba.At(x - 1, y, 1));
+        across += std::abs(map_.Whole().rgba.At(x + 1, y, 1) - map_.Whole().rgba.At(x - 1, y, 1));
         inside += std::abs(world.world.ColorAt(a)[1] - world.world.ColorAt(b)[1]);
         ++count;
       }
@@ -204,15 +205,15 @@ TEST_F(OrthomosaicTest, AnyNumberOfThreadsGivesTheSameBytes) {
   options.picture_bytes = 1;    // nothing is kept
   num_threads_ = 1;
   Make(world, options);
-  const MapTile one = map_.whole;
-  EXPECT_GT(map_.grid.NumTiles(), 2);
+  const MapTile one = map_.Whole();
+  EXPECT_GT(map_.Grid().NumTiles(), 2);
   for (const int num_threads : {2, 5}) {
     num_threads_ = num_threads;
     Make(world, options);
-    EXPECT_EQ(map_.whole.rgba.data, one.rgba.data);
-    EXPECT_EQ(map_.whole.source.data, one.source.data);
-    EXPECT_EQ(map_.whole.surface.data, one.surface.data);
-    EXPECT_EQ(std::memcmp(map_.whole.relief.data.data(), one.relief.data.data(),
+    EXPECT_EQ(map_.Whole().rgba.data, one.rgba.data);
+    EXPECT_EQ(map_.Whole().source.data, one.source.data);
+    EXPECT_EQ(map_.Whole().surface.data, one.surface.data);
+    EXPECT_EQ(std::memcmp(map_.Whole().relief.data.data(), one.relief.data.data(),
                           one.relief.data.size() * sizeof(float)),
               0);
   }
@@ -226,12 +227,12 @@ TEST_F(OrthomosaicTest, TilesDoNotShow) {
   Make(world, options);
   double at_border = 0, elsewhere = 0;
   int num_at_border = 0, num_elsewhere = 0;
-  for (int y = 0; y < map_.grid.height; ++y) {
-    for (int x = 1; x < map_.grid.width; ++x) {
+  for (int y = 0; y < map_.Grid().height; ++y) {
+    for (int x = 1; x < map_.Grid().width; ++x) {
       if (!HasColor(x, y) || !HasColor(x - 1, y)) continue;
-      const int step = std::abs(map_.whole.rgba.At(x, y, 0) - map_.whole.rgba.At(x - 1, y, 0));
-      (x % map_.grid.tile_size == 0 ? at_border : elsewhere) += step;
-      ++(x % map_.grid.tile_size == 0 ? num_at_border : num_elsewhere);
+      const int step = std::abs(map_.Whole().rgba.At(x, y, 0) - map_.Whole().rgba.At(x - 1, y, 0));
+      (x % map_.Grid().tile_size == 0 ? at_border : elsewhere) += step;
+      ++(x % map_.Grid().tile_size == 0 ? num_at_border : num_elsewhere);
     }
   }
   ASSERT_GT(num_at_border, 100);
@@ -250,11 +251,11 @@ TEST_F(OrthomosaicTest, MasksAndUnreadablePicturesGiveNoColour) {
   EXPECT_LT(summary.num_colored_pixels, summary.num_surface_pixels);
   const std::vector<Viewpoint> viewpoints = world.Viewpoints();
   int num_of_masked = 0;
-  for (int y = 0; y < map_.grid.height; ++y) {
-    for (int x = 0; x < map_.grid.width; ++x) {
-      EXPECT_EQ(HasColor(x, y), map_.whole.surface.At(x, y) != 0 &&
-                                    (map_.whole.surface.At(x, y) & kUncolored) == 0);
-      if (map_.whole.source.At(x, y) != 4) continue;
+  for (int y = 0; y < map_.Grid().height; ++y) {
+    for (int x = 0; x < map_.Grid().width; ++x) {
+      EXPECT_EQ(HasColor(x, y), map_.Whole().surface.At(x, y) != 0 &&
+                                    (map_.Whole().surface.At(x, y) & kUncolored) == 0);
+      if (map_.Whole().source.At(x, y) != 4) continue;
       const auto pixel = PixelOf(world.world, viewpoints[4], TruthAt(world, x + 0.5, y + 0.5));
       if (!pixel) continue;
       ++num_of_masked;
@@ -270,11 +271,11 @@ TEST_F(OrthomosaicTest, PicturesOfOtherResolutionsFit) {
   Make(world);
   double error = 0;
   int count = 0;
-  for (int y = 0; y < map_.grid.height; y += 3) {
-    for (int x = 0; x < map_.grid.width; x += 3) {
+  for (int y = 0; y < map_.Grid().height; y += 3) {
+    for (int x = 0; x < map_.Grid().width; x += 3) {
       const Eigen::Vector3d place = TruthAt(world, x + 0.5, y + 0.5);
       if (!HasColor(x, y) || place.head<2>().norm() < 0.5) continue;
-      error += std::abs(map_.whole.rgba.At(x, y, 0) - world.world.ColorAt(place)[0]);
+      error += std::abs(map_.Whole().rgba.At(x, y, 0) - world.world.ColorAt(place)[0]);
       ++count;
     }
   }

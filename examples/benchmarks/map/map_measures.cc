@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "colmap_seapoint/base/median.h"
 #include "colmap_seapoint/orthomosaic/ground/map_view.h"
 #include "colmap_seapoint/orthomosaic/sources/picture_sample.h"
 #include "examples/survey/scene/seabed.h"
@@ -18,11 +19,8 @@ constexpr int kPatch = 16;  // half the side of a mark, pixels
 constexpr int kSearch = 4;  // pixels
 constexpr int kNumMarks = 200;
 
-double Quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<size_t>(at)];
+double QuantileOr0(const std::vector<double>& values, double share) {
+  return values.empty() ? 0 : Quantile(values, share);
 }
 
 // The true surface below the centre of a pixel, along the map's normal.
@@ -161,7 +159,7 @@ ReliefErrors MeasureRelief(const SurveyTruth& truth, const MemoryMap& map) {
       errors.push_back(std::abs(HeightOf(map, hit->xyz) - double{relief.At(x, y)}) / truth.gsd);
     }
   }
-  return {Quantile(errors, 0.5), Quantile(errors, 0.95)};
+  return {QuantileOr0(errors, 0.5), QuantileOr0(errors, 0.95)};
 }
 
 MapCoverage MeasureCoverage(const SurveyTruth& truth, const std::vector<Eigen::Vector3f>& points,
@@ -214,7 +212,7 @@ MarkErrors MeasureMarks(const SurveyTruth& truth, const SurveyOptions& options,
     const auto error = MarkError(TruePatch(truth, map, x, y, &colours), map.Whole().rgba, x, y);
     if (error) errors.push_back(*error);
   }
-  return {static_cast<int>(errors.size()), Quantile(errors, 0.5), Quantile(errors, 0.95)};
+  return {static_cast<int>(errors.size()), QuantileOr0(errors, 0.5), QuantileOr0(errors, 0.95)};
 }
 
 SeamSteps MeasureSeams(const SurveyTruth& truth, const MapPictureReader& read,
@@ -240,7 +238,7 @@ SeamSteps MeasureSeams(const SurveyTruth& truth, const MapPictureReader& read,
       across.push_back(std::abs(Luma(whole.rgba, x, y) - Luma(whole.rgba, x + 1, y)));
     }
   }
-  return {static_cast<int>(across.size()), Quantile(across, 0.5), Quantile(inside, 0.5)};
+  return {static_cast<int>(across.size()), QuantileOr0(across, 0.5), QuantileOr0(inside, 0.5)};
 }
 
 }  // namespace colmap_seapoint
