@@ -40,7 +40,8 @@ Eigen::Vector3d LocalEastNorthUp(const GeoPosition& position, const GeoPosition&
 GeoPosition FromLocalEastNorthUp(const Eigen::Vector3d& east_north_up, const GeoPosition& origin) {
   const Radii radii = RadiiAt(origin.latitude_deg);
   return {origin.latitude_deg + east_north_up.y() / (kRadiansPerDegree * radii.north),
-          origin.longitude_deg + east_north_up.x() / (kRadiansPerDegree * radii.east),
+          std::remainder(
+              origin.longitude_deg + east_north_up.x() / (kRadiansPerDegree * radii.east), 360.0),
           origin.altitude_m + east_north_up.z()};
 }
 

@@ -11,6 +11,7 @@
 #include "colmap_seapoint/compare/point_index.h"
 #include "colmap_seapoint/io/cloud/ply.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/model_units.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "colmap_seapoint/rendering/camera_picture.h"
@@ -37,6 +38,7 @@ void Validate(const CloudRendererOptions& options) {
     throw Error(options.output_path, "is there already",
                 "remove it, or give another --output_path");
   }
+  CheckWritableDir(FolderOf(options.output_path));
 }
 
 std::string UnitOf(const fs::path& cloud_path) {

@@ -72,7 +72,7 @@ void CheckOutputPaths(const OptionTable& table) {
 }
 
 void CheckRunReport(const std::filesystem::path& path) {
-  RemoveLeftovers(path.has_parent_path() ? path.parent_path() : ".");
+  RemoveLeftovers(FolderOf(path));
   CheckReplaceable(path, "\"command\": \"", "move it away, or choose another --database_path");
 }
 

@@ -60,7 +60,7 @@ void Draw(const PdfPage& page, HPDF_Font font, HPDF_Doc document) {
 
 // The document's bytes.
 std::string Save(HPDF_Doc document) {
-  HPDF_SaveToStream(document);
+  SEAPOINT_CHECK(HPDF_SaveToStream(document) == HPDF_OK);
   std::string bytes;
   for (;;) {
     HPDF_BYTE buffer[4096];
