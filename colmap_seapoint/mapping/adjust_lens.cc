@@ -17,6 +17,7 @@
 #include "colmap_seapoint/lens/lens_doubt.h"
 #include "colmap_seapoint/mapping/retriangulate.h"
 #include "colmap_seapoint/mapping/sound_adjustment.h"
+#include "colmap_seapoint/remeasuring/extend_tracks.h"
 #include "colmap_seapoint/remeasuring/remeasure_observations.h"
 #include "colmap_seapoint/reposing/match_agreement.h"
 #include "colmap_seapoint/reposing/repose_pictures.h"
@@ -29,6 +30,7 @@ namespace fs = std::filesystem;
 
 constexpr size_t kFirmObservations = 100;
 constexpr double kMaxFocalRatioOnceMore = 1.2;
+constexpr size_t kMaxExtendedObservations = 1500;  // of a picture
 
 // What became of the first camera, as one line for the user.
 std::string Outcome(const Camera& was, const Camera& is) {
@@ -40,10 +42,11 @@ std::string Outcome(const Camera& was, const Camera& is) {
   return text;
 }
 
-size_t NumObservations(const PosedImage& image) {
-  return image.point3D_ids.size() -
+size_t NumObservations(const PosedImage& image, size_t first_predicted) {
+  const auto begin = image.point3D_ids.begin();
+  return first_predicted -
          static_cast<size_t>(
-             std::count(image.point3D_ids.begin(), image.point3D_ids.end(), kNoPoint3D));
+             std::count(begin, begin + static_cast<std::ptrdiff_t>(first_predicted), kNoPoint3D));
 }
 
 // The model as everybody will read it: rotations are made unit ones again by every reading.
@@ -53,11 +56,14 @@ SparseModel WrittenAndRead(const fs::path& folder, SparseModel model) {
   return ReadSparseModel(folder);
 }
 
-// Whether each picture keeps half of its observations, or as many as hold it firmly.
-bool HoldsFirmly(const SparseModel& before, const SparseModel& after) {
+// Whether each picture keeps half of its observations, predicted ones aside, or as many as hold it
+// firmly.
+bool HoldsFirmly(const SparseModel& before, const SparseModel& after,
+                 const std::vector<size_t>& first_predicted) {
   for (size_t i = 0; i < before.images.size(); ++i) {
-    const size_t num_left = NumObservations(after.images[i]);
-    if (num_left < kFirmObservations && 2 * num_left < NumObservations(before.images[i])) {
+    const size_t num_left = NumObservations(after.images[i], first_predicted[i]);
+    if (num_left < kFirmObservations &&
+        2 * num_left < NumObservations(before.images[i], first_predicted[i])) {
       return false;
     }
   }
@@ -66,8 +72,11 @@ bool HoldsFirmly(const SparseModel& before, const SparseModel& after) {
 
 // The model with its observations measured again in the pictures: those that are known best where
 // they are enough, else those that are known at all; nullopt where neither are.
-std::optional<SparseModel> MeasuredAgain(const SparseModel& model, const AdjustmentJob& job) {
+std::optional<SparseModel> MeasuredAgain(const SparseModel& model,
+                                         const std::vector<size_t>& first_predicted,
+                                         const AdjustmentJob& job) {
   RemeasuringOptions options;
+  options.first_predicted = first_predicted;
   options.num_threads = job.num_threads;
   if (!job.mask_path.empty()) {
     options.read_mask = [&, masks = PictureMasks(job.mask_path)](const PosedImage& image) {
@@ -81,7 +90,7 @@ std::optional<SparseModel> MeasuredAgain(const SparseModel& model, const Adjustm
   for (const double max_sigma : {options.max_sigma, kMaxPatchSigma}) {
     options.max_sigma = max_sigma;
     Remeasurement measured = RemeasureObservations(options, model, read);
-    if (HoldsFirmly(model, measured.model)) return std::move(measured.model);
+    if (HoldsFirmly(model, measured.model, first_predicted)) return std::move(measured.model);
   }
   return std::nullopt;
 }
@@ -123,11 +132,24 @@ std::string Refusal(const char* what, const std::string& fault) {
   return fault.empty() ? "" : std::string("; ") + what + " kept as the mapper left it: " + fault;
 }
 
-// Measures the observations again, chooses the form of the lens that they prove, unless it is held,
-// and adjusts once more. Returns what is known of the lens, or why the model stayed as it was.
+// How many observations a picture shall have when those that the model predicts are added.
+size_t MaxObservations(size_t num_images) {
+  return std::min(kMaxExtendedObservations,
+                  kMaxAdjustedObservations / std::max<size_t>(1, num_images));
+}
+
+// Measures the observations again, and those that matching missed, chooses the form of the lens
+// that they prove, unless it is held, and adjusts once more. Returns what is known of the lens, or
+// why the model stayed as it was.
 std::string MeasureAndAdjust(const AdjustmentJob& job, LensLimits limits, const fs::path& folder,
                              SparseModel* model) {
-  if (auto measured = MeasuredAgain(*model, job)) *model = *std::move(measured);
+  const std::vector<size_t> num_points2D = NumPoints2D(*model);
+  ExtendTracks({MaxObservations(model->images.size()), job.num_threads}, model);
+  if (auto measured = MeasuredAgain(*model, num_points2D, job)) {
+    *model = *std::move(measured);
+  } else {
+    DropExtensions(num_points2D, model);
+  }
   limits.max_focal_ratio = kMaxFocalRatioOnceMore;
   limits.rejects_outliers = true;
   LensChoice choice;
@@ -142,6 +164,7 @@ std::string MeasureAndAdjust(const AdjustmentJob& job, LensLimits limits, const 
     return Refusal("second adjustment", last.fault);
   }
   const std::string known = job.holds_lens ? "" : WhatIsKnown(choice, last.adjustment);
+  DropExtensions(num_points2D, &last.adjustment.model);
   *model = WrittenAndRead(folder, std::move(last.adjustment.model));
   return known;
 }

@@ -8,6 +8,7 @@
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/database_copy.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
+#include "colmap_seapoint/mapping/adjust_lens.h"
 #include "colmap_seapoint/mapping/lens_pilot.h"
 #include "colmap_seapoint/tracks/thinned_database.h"
 
@@ -24,10 +25,8 @@ constexpr char kRefineFocal[] = "Mapper.ba_refine_focal_length";
 constexpr char kMinInitialAngle[] = "Mapper.init_min_tri_angle";
 constexpr double kWideFocal = 0.7;  // of the longer side: 71 degrees
 
-// Observations that the last adjustment takes in, whose memory grows with them; a picture has a few
-// thousand, and several hundred hold it as well.
-constexpr size_t kMaxObservations = 1600000;
-constexpr size_t kManyObservations = 2000;  // a picture
+// Of a picture; several hundred hold it as well.
+constexpr size_t kManyObservations = 2000;
 
 // Makes the thinned database; where there are many pictures, with the lens that some of them tell.
 void PrepareThinned(const ColmapProgram& colmap, const MapperJob& job, const fs::path& folder,
@@ -37,7 +36,8 @@ void PrepareThinned(const ColmapProgram& colmap, const MapperJob& job, const fs:
     const ColmapDatabase database(job.database_path, ColmapDatabase::Mode::kReadOnly,
                                   ColmapDatabase::Check::kNone);
     WriteThinnedDatabase(database, {}, plan->database_path);
-    const size_t num_observations = kMaxObservations / std::max<size_t>(1, job.pictures.size());
+    const size_t num_observations =
+        kMaxAdjustedObservations / std::max<size_t>(1, job.pictures.size());
     if (num_observations < kManyObservations) {
       plan->triangulation_path = folder / "triangulation.db";
       ThinningOptions options;

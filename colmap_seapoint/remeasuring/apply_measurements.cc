@@ -32,6 +32,9 @@ void Count(MeasurementOutcome outcome, RemeasuringCounts* counts) {
     case MeasurementOutcome::kTwice:
       ++counts->twice;
       break;
+    case MeasurementOutcome::kUnseen:
+      ++counts->unseen;
+      break;
   }
 }
 

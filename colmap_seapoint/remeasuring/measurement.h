@@ -16,6 +16,7 @@ enum class MeasurementOutcome : uint8_t {
   kUnsure,
   kElsewhere,
   kTwice,
+  kUnseen,
 };
 
 inline bool IsTakenOut(MeasurementOutcome outcome) {

@@ -45,7 +45,7 @@ class Remeasuring {
       : options_(options),
         model_(model),
         read_(read),
-        tracks_(MakeTrackTable(model)),
+        tracks_(MakeTrackTable(model, options.first_predicted)),
         patches_(tracks_.point3D_ids.size()),
         is_of_other_size_(model.images.size(), 0) {}
 
@@ -117,7 +117,8 @@ class Remeasuring {
   }
 
   bool IsToBeMeasured(const Observation& observation) const {
-    return observation.role == ObservationRole::kOther &&
+    return (observation.role == ObservationRole::kOther ||
+            observation.role == ObservationRole::kPredicted) &&
            patches_[static_cast<size_t>(observation.point_idx)].has_value();
   }
 
@@ -140,6 +141,10 @@ class Remeasuring {
       } else if (!picture.Empty() && IsToBeMeasured(observation)) {
         measurement = Measure(image, observation, picture);
       }
+      if (observation.role == ObservationRole::kPredicted &&
+          measurement.outcome == MeasurementOutcome::kUnmeasured) {
+        measurement.outcome = MeasurementOutcome::kUnseen;
+      }
     }
     return measured;
   }
@@ -148,18 +153,22 @@ class Remeasuring {
                       const Picture& picture) const {
     const KeptPatch& patch = *patches_[static_cast<size_t>(observation.point_idx)];
     const auto predicted =
-        PredictPlace(model_.cameras.at(image.camera_id), image.cam_from_world, patch.surface);
-    if (!predicted || HidesPatch(picture.mask, predicted->pixel, predicted->other_from_reference)) {
-      return {};
-    }
-    const PatchMatch match = MatchPatch(patch.gray, picture.luma, *predicted);
+        PredictPatch(model_.cameras.at(image.camera_id), image.cam_from_world, patch.surface);
+    if (!predicted) return {};
+    const PredictedPlace& place = predicted->place;
+    if (HidesPatch(picture.mask, place.pixel, place.other_from_reference)) return {};
+    const PatchMatch match = MatchPatch(patch.gray, picture.luma, place);
     Measurement measurement;
     measurement.outcome = OutcomeOf(match.status);
     if (measurement.outcome != MeasurementOutcome::kMoved) return measurement;
-    measurement.pixel = match.pixel + predicted->other_from_reference * patch.aside.cast<double>();
+    measurement.pixel =
+        match.pixel - predicted->bend + place.other_from_reference * patch.aside.cast<double>();
     const double move = (measurement.pixel - image.points2D[observation.point2D_idx]).norm();
     if (!(match.sigma <= options_.max_sigma)) measurement.outcome = MeasurementOutcome::kUnsure;
-    if (!(move <= options_.max_move)) measurement.outcome = MeasurementOutcome::kElsewhere;
+    const double max_move = observation.role == ObservationRole::kPredicted
+                                ? options_.max_predicted_move
+                                : options_.max_move;
+    if (!(move <= max_move)) measurement.outcome = MeasurementOutcome::kElsewhere;
     return measurement;
   }
 

@@ -32,6 +32,11 @@ struct RemeasuringOptions {
   // A picture's mask, 0 where it shows what is not to be used; empty where it has none. Null: there
   // are no masks. What a mask hides is not measured in, and observations near it stay as they are.
   GrayPictureReader read_mask;
+  // By picture, in the order of the model: from which on its observations are but predicted
+  // (extend_tracks.h). They are never a reference, and are taken out where they are not measured,
+  // or a pixel beside where they should be. Empty: none is.
+  std::vector<size_t> first_predicted;
+  double max_predicted_move = 1;  // pixels
 };
 
 // What became of the observations of triangulated points.
@@ -46,6 +51,7 @@ struct RemeasuringCounts {
   size_t unsure = 0;
   size_t elsewhere = 0;  // farther than max_move
   size_t twice = 0;      // a second one in the same picture
+  size_t unseen = 0;     // predicted, and not to be measured there
   size_t alone = 0;      // the others of their track are out
   size_t removed_points = 0;
 };

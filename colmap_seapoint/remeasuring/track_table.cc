@@ -49,14 +49,19 @@ void MarkTwice(View* view, View* other) {
   worse->observation.role = ObservationRole::kTwice;
 }
 
-std::vector<View> ViewsOf(const SparseModel& model, const ImageIdxs& idxs, int point_idx,
+std::vector<View> ViewsOf(const SparseModel& model, const ImageIdxs& idxs,
+                          const std::vector<size_t>& first_predicted, int point_idx,
                           const SparsePoint& point) {
   std::vector<View> views;
   for (const SparsePoint::TrackElement& element : point.track) {
     const auto image_idx = idxs.find(element.image_id);
     if (image_idx == idxs.end()) continue;
-    const auto view = ViewFrom(model, point.xyz, image_idx->second,
-                               {point_idx, element.point2D_idx, ObservationRole::kOther});
+    const bool is_predicted =
+        !first_predicted.empty() && element.point2D_idx >= first_predicted[image_idx->second];
+    const auto view =
+        ViewFrom(model, point.xyz, image_idx->second,
+                 {point_idx, element.point2D_idx,
+                  is_predicted ? ObservationRole::kPredicted : ObservationRole::kOther});
     if (view) views.push_back(*view);
   }
   for (size_t a = 0; a < views.size(); ++a) {
@@ -72,7 +77,7 @@ void MarkReference(std::vector<View>* views) {
   View* best = nullptr;
   double best_score = 0;
   for (View& view : *views) {
-    if (view.observation.role == ObservationRole::kTwice || !view.holds_patch) continue;
+    if (view.observation.role != ObservationRole::kOther || !view.holds_patch) continue;
     const double score = view.scale * view.scale * view.ray.dot(mean);
     const bool is_first = best == nullptr || view.image_idx < best->image_idx;
     if (!(score > best_score || (score == best_score && is_first))) continue;
@@ -84,7 +89,7 @@ void MarkReference(std::vector<View>* views) {
 
 }  // namespace
 
-TrackTable MakeTrackTable(const SparseModel& model) {
+TrackTable MakeTrackTable(const SparseModel& model, const std::vector<size_t>& first_predicted) {
   ImageIdxs idxs;
   for (size_t i = 0; i < model.images.size(); ++i) idxs.emplace(model.images[i].image_id, i);
   TrackTable table;
@@ -92,7 +97,7 @@ TrackTable MakeTrackTable(const SparseModel& model) {
   for (const auto& [id, point] : model.points3D) {
     const int point_idx = static_cast<int>(table.point3D_ids.size());
     table.point3D_ids.push_back(id);
-    std::vector<View> views = ViewsOf(model, idxs, point_idx, point);
+    std::vector<View> views = ViewsOf(model, idxs, first_predicted, point_idx, point);
     MarkReference(&views);
     for (const View& view : views) table.observations[view.image_idx].push_back(view.observation);
   }

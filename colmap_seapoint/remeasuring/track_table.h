@@ -11,7 +11,8 @@ namespace colmap_seapoint {
 enum class ObservationRole {
   kReference,  // in the picture that shows the point best
   kOther,
-  kTwice,  // its picture observes the point elsewhere too, and there nearer to where it should
+  kTwice,     // its picture observes the point elsewhere too, and there nearer to where it should
+  kPredicted  // nobody has seen it there yet
 };
 
 struct Observation {
@@ -29,7 +30,8 @@ struct TrackTable {
 // pairs of coordinates that the model has. The reference is the picture with the most pixels on
 // the surface, the less the more its ray is turned from the mean of the point's rays: from
 // there all others look most alike. It must hold a patch around the point; a point without such a
-// picture, or seen by fewer than two, has no reference. 40 bytes an observation.
-TrackTable MakeTrackTable(const SparseModel& model);
+// picture, or seen by fewer than two, has no reference. `first_predicted`: RemeasuringOptions.
+// 40 bytes an observation.
+TrackTable MakeTrackTable(const SparseModel& model, const std::vector<size_t>& first_predicted);
 
 }  // namespace colmap_seapoint
