@@ -59,11 +59,13 @@ SparseModel WrittenAndRead(const fs::path& folder, SparseModel model) {
 // Whether each picture keeps half of its observations, predicted ones aside, or as many as hold it
 // firmly.
 bool HoldsFirmly(const SparseModel& before, const SparseModel& after,
-                 const std::vector<size_t>& first_predicted) {
+                 const std::map<uint32_t, size_t>& first_predicted) {
   for (size_t i = 0; i < before.images.size(); ++i) {
-    const size_t num_left = NumObservations(after.images[i], first_predicted[i]);
+    const size_t num_left =
+        NumObservations(after.images[i], first_predicted.at(before.images[i].image_id));
     if (num_left < kFirmObservations &&
-        2 * num_left < NumObservations(before.images[i], first_predicted[i])) {
+        2 * num_left <
+            NumObservations(before.images[i], first_predicted.at(before.images[i].image_id))) {
       return false;
     }
   }
@@ -73,7 +75,7 @@ bool HoldsFirmly(const SparseModel& before, const SparseModel& after,
 // The model with its observations measured again in the pictures: those that are known best where
 // they are enough, else those that are known at all; nullopt where neither are.
 std::optional<SparseModel> MeasuredAgain(const SparseModel& model,
-                                         const std::vector<size_t>& first_predicted,
+                                         const std::map<uint32_t, size_t>& first_predicted,
                                          const AdjustmentJob& job) {
   RemeasuringOptions options;
   options.first_predicted = first_predicted;
@@ -143,7 +145,7 @@ size_t MaxObservations(size_t num_images) {
 // why the model stayed as it was.
 std::string MeasureAndAdjust(const AdjustmentJob& job, LensLimits limits, const fs::path& folder,
                              SparseModel* model) {
-  const std::vector<size_t> num_points2D = NumPoints2D(*model);
+  const std::map<uint32_t, size_t> num_points2D = NumPoints2D(*model);
   ExtendTracks({MaxObservations(model->images.size()), job.num_threads}, model);
   if (auto measured = MeasuredAgain(*model, num_points2D, job)) {
     *model = *std::move(measured);

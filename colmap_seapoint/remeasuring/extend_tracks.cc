@@ -153,9 +153,9 @@ class TrackExtension {
 
 }  // namespace
 
-std::vector<size_t> NumPoints2D(const SparseModel& model) {
-  std::vector<size_t> nums;
-  for (const PosedImage& image : model.images) nums.push_back(image.points2D.size());
+std::map<uint32_t, size_t> NumPoints2D(const SparseModel& model) {
+  std::map<uint32_t, size_t> nums;
+  for (const PosedImage& image : model.images) nums[image.image_id] = image.points2D.size();
   return nums;
 }
 
@@ -177,29 +177,26 @@ void ExtendTracks(const TrackExtensionOptions& options, SparseModel* model) {
   }
 }
 
-void DropExtensions(const std::vector<size_t>& num_points2D, SparseModel* model) {
-  std::unordered_map<uint32_t, size_t> idxs;
-  for (size_t i = 0; i < model->images.size(); ++i) {
-    PosedImage& image = model->images[i];
-    idxs.emplace(image.image_id, i);
-    image.points2D.resize(num_points2D[i]);
-    image.point3D_ids.resize(num_points2D[i]);
+void DropExtensions(const std::map<uint32_t, size_t>& num_points2D, SparseModel* model) {
+  std::unordered_map<uint32_t, PosedImage*> images;
+  for (PosedImage& image : model->images) {
+    images[image.image_id] = &image;
+    image.points2D.resize(num_points2D.at(image.image_id));
+    image.point3D_ids.resize(image.points2D.size());
   }
+  const auto is_extension = [&](const SparsePoint::TrackElement& element) {
+    return element.point2D_idx >= images.at(element.image_id)->points2D.size();
+  };
   auto& points = model->points3D;
   for (auto point = points.begin(); point != points.end();) {
     std::vector<SparsePoint::TrackElement>& track = point->second.track;
-    track.erase(std::remove_if(track.begin(), track.end(),
-                               [&](const SparsePoint::TrackElement& element) {
-                                 return element.point2D_idx >=
-                                        num_points2D[idxs.at(element.image_id)];
-                               }),
-                track.end());
+    track.erase(std::remove_if(track.begin(), track.end(), is_extension), track.end());
     if (track.size() >= 2) {
       ++point;
       continue;
     }
     for (const SparsePoint::TrackElement& element : track) {
-      model->images[idxs.at(element.image_id)].point3D_ids[element.point2D_idx] = kNoPoint3D;
+      images.at(element.image_id)->point3D_ids[element.point2D_idx] = kNoPoint3D;
     }
     point = points.erase(point);
   }

@@ -10,7 +10,8 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
+#include <cstdint>
+#include <map>
 
 #include "colmap_seapoint/base/sparse_model.h"
 
@@ -22,8 +23,8 @@ struct TrackExtensionOptions {
   int num_threads = -1;  // -1 = all; never changes a result
 };
 
-// How many pairs of coordinates each picture of a model has, in the order of its images.
-std::vector<size_t> NumPoints2D(const SparseModel& model);
+// How many pairs of coordinates each picture of a model has, by image_id.
+std::map<uint32_t, size_t> NumPoints2D(const SparseModel& model);
 
 // Adds the observations that the model predicts, behind those that a picture has: of points that
 // pictures which see the same things observe, from no less than two thirds of the least distance
@@ -34,6 +35,6 @@ void ExtendTracks(const TrackExtensionOptions& options, SparseModel* model);
 
 // Takes the observations from `num_points2D` on out again, which no database knows of, and the
 // points that have fewer than two left.
-void DropExtensions(const std::vector<size_t>& num_points2D, SparseModel* model);
+void DropExtensions(const std::map<uint32_t, size_t>& num_points2D, SparseModel* model);
 
 }  // namespace colmap_seapoint

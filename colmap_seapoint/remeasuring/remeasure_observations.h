@@ -8,7 +8,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -32,10 +34,10 @@ struct RemeasuringOptions {
   // A picture's mask, 0 where it shows what is not to be used; empty where it has none. Null: there
   // are no masks. What a mask hides is not measured in, and observations near it stay as they are.
   GrayPictureReader read_mask;
-  // By picture, in the order of the model: from which on its observations are but predicted
-  // (extend_tracks.h). They are never a reference, and are taken out where they are not measured,
-  // or a pixel beside where they should be. Empty: none is.
-  std::vector<size_t> first_predicted;
+  // By image_id: from which on a picture's observations are but predicted (extend_tracks.h). They
+  // are never a reference, and are taken out where they are not measured, or a pixel beside where
+  // they should be. A picture that is not named has none.
+  std::map<uint32_t, size_t> first_predicted;
   double max_predicted_move = 1;  // pixels
 };
 

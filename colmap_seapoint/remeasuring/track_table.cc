@@ -50,14 +50,15 @@ void MarkTwice(View* view, View* other) {
 }
 
 std::vector<View> ViewsOf(const SparseModel& model, const ImageIdxs& idxs,
-                          const std::vector<size_t>& first_predicted, int point_idx,
+                          const std::map<uint32_t, size_t>& first_predicted, int point_idx,
                           const SparsePoint& point) {
   std::vector<View> views;
   for (const SparsePoint::TrackElement& element : point.track) {
     const auto image_idx = idxs.find(element.image_id);
     if (image_idx == idxs.end()) continue;
+    const auto first = first_predicted.find(element.image_id);
     const bool is_predicted =
-        !first_predicted.empty() && element.point2D_idx >= first_predicted[image_idx->second];
+        first != first_predicted.end() && element.point2D_idx >= first->second;
     const auto view =
         ViewFrom(model, point.xyz, image_idx->second,
                  {point_idx, element.point2D_idx,
@@ -89,7 +90,8 @@ void MarkReference(std::vector<View>* views) {
 
 }  // namespace
 
-TrackTable MakeTrackTable(const SparseModel& model, const std::vector<size_t>& first_predicted) {
+TrackTable MakeTrackTable(const SparseModel& model,
+                          const std::map<uint32_t, size_t>& first_predicted) {
   ImageIdxs idxs;
   for (size_t i = 0; i < model.images.size(); ++i) idxs.emplace(model.images[i].image_id, i);
   TrackTable table;

@@ -1,7 +1,9 @@
 // The tracks of a model in dense numbers, and the picture that shows each of its points best.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "colmap_seapoint/base/sparse_model.h"
@@ -32,6 +34,7 @@ struct TrackTable {
 // there all others look most alike. It must hold a patch around the point; a point without such a
 // picture, or seen by fewer than two, has no reference. `first_predicted`: RemeasuringOptions.
 // 40 bytes an observation.
-TrackTable MakeTrackTable(const SparseModel& model, const std::vector<size_t>& first_predicted);
+TrackTable MakeTrackTable(const SparseModel& model,
+                          const std::map<uint32_t, size_t>& first_predicted);
 
 }  // namespace colmap_seapoint
