@@ -1,0 +1,65 @@
+#!/usr/bin/env bash
+# run_mission_test.sh SOURCE_DIR BINARY DEMO_SURVEY: a mission of two dives, an empty folder and
+# rubbish, through the real program: answers, exit codes, what is done again and what is not.
+set -euo pipefail
+source_dir=$1 binary=$2 demo_survey=$3
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+export XDG_CACHE_HOME=$folder/cache QT_QPA_PLATFORM=offscreen
+
+fail() { echo "run_mission: $*" >&2; cat "$folder/out" >&2; exit 1; }
+run() {  # EXIT_CODE MISSION [OPTION...]
+  local expected=$1 mission=$2 status=0
+  shift 2
+  "$source_dir/scripts/run_mission.sh" --quality field --binary "$binary" "$@" "$mission" \
+    >"$folder/out" 2>&1 || status=$?
+  [ "$status" -eq "$expected" ] || fail "exit code $status, not $expected"
+}
+said() { grep -q -e "$1" "$folder/out" || fail "did not say: $1"; }
+ended() { sed -n 's/.*"digest": "\(.*\)",/\1/p; s/.*"seconds": \(.*\),/\1/p' "$mission/results/$1/outcome.json"; stat -c %y "$mission/results/$1/outcome.json"; }
+
+"$demo_survey" generate --output_path "$folder/survey" --num_strips 1 --images_per_strip 5 \
+  --width 480 --height 360 >/dev/null 2>&1
+mission="$folder/our mission"
+mkdir -p "$mission/one/images" "$mission/tw ö" "$mission/empty" "$mission/rubbish"
+cp "$folder"/survey/images/* "$mission/one/images"
+cp "$folder"/survey/images/* "$mission/tw ö"
+head -c 2000 /dev/urandom >"$mission/rubbish/dive.jpg"
+
+run 3 "$mission"
+said '^one: 5 of 5 pictures used'
+said '^tw ö: 5 of 5 pictures used'
+said '^empty: FAILED: .*holds no picture'
+said '^rubbish: FAILED: .*none of its 1 pictures can be used'
+grep -q '2 of 4 dives came out' "$mission/results/mission.html" || fail "the page is wrong"
+
+# Nothing has changed but dates and what nothing depends on: nothing is done again.
+one=$(ended one) two=$(ended 'tw ö')
+touch "$mission/one/images"/*
+run 3 "$mission"
+[ "$(ended one)" = "$one" ] || fail "a dive with new dates was made again"
+
+# One picture less: that dive is, and no other.
+rm "$(ls -d "$mission"/one/images/* | tail -n 1)"
+run 3 "$mission"
+said '^one: 4 of 4 pictures used'
+[ "$(ended 'tw ö')" = "$two" ] || fail "a dive was made again for another one's sake"
+
+# A dive of its own options; the last that fails goes, and all is well.
+rm -r "$mission/empty" "$mission/rubbish"
+printf 'min_confidence=2\n' >"$mission/tw ö/project.ini"
+run 3 "$mission"
+said '^tw ö: FAILED: .*min_confidence'
+rm "$mission/tw ö/project.ini"
+run 0 "$mission"
+
+# Without anything, and without anything good.
+mkdir "$folder/nothing"
+run 1 "$folder/nothing"
+said 'holds no dive'
+mkdir "$folder/nothing/empty"
+run 1 "$folder/nothing"
+run 2 "$mission" --jobs none
+run 1 "$folder/elsewhere"
+said 'no such folder'
+echo "run_mission: all as promised"
