@@ -136,7 +136,7 @@ class TileCanvas::Brush {
     if (!pixel) return false;
     const auto px = static_cast<float>(scale_x_ * pixel->x());
     const auto py = static_cast<float>(scale_y_ * pixel->y());
-    if (IsMasked(*picture_, px, py) || canvas_.sight_.IsHidden(place, camera_)) return false;
+    if (IsMasked(*picture_, px, py) || IsHidden(place)) return false;
     *light = LightAt(*picture_, px, py);
     if (canvas_.scene_.restoration != nullptr) Restore(place, light);
     exposure_.Apply(px, py, light);
@@ -147,6 +147,12 @@ class TileCanvas::Brush {
   MapPlace PlaceAt(int x, int y) const {
     const float height = canvas_.relief_.heights.At(x + kReliefMargin, y + kReliefMargin);
     return {canvas_.box_.x + x + 0.5, canvas_.box_.y + y + 0.5, double{height}};
+  }
+  // Seen from afar, all of a block looks the same way.
+  bool IsHidden(const MapPlace& place) const {
+    constexpr double kFar = 20 * kBlockSize;
+    if (!(rise_.length > kFar)) return canvas_.sight_.IsHidden(place, camera_);
+    return canvas_.sight_.IsHiddenAlong(place, rise_);
   }
   void Restore(const MapPlace& place, Light* light) const {
     const Eigen::Vector2d on_map = canvas_.scene_.relief.Grid().PlaceOf(place.x(), place.y());
@@ -164,12 +170,14 @@ class TileCanvas::Brush {
   MapPlace camera_;
   std::optional<PatchProjection> projection_;
   LocalExposure exposure_;
+  Rise rise_;
 };
 
 void TileCanvas::Brush::MoveTo(int x, int y) {
   if (picture_->Empty()) return;
   const MapPlace place = PlaceAt(x, y);
   projection_.emplace(view_, canvas_.scene_.relief.Grid(), place);
+  rise_ = LineOfSight::RiseTo(place, camera_);
   const auto pixel = projection_->PixelOf(place);
   if (!pixel) return;
   exposure_ = LocalExposure(canvas_.scene_.exposure, picture_idx_, *picture_,

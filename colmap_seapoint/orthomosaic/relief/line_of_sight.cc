@@ -8,18 +8,6 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
-// The way from a place towards the camera: so many pixels, rising so much with every pixel.
-struct Rise {
-  double dx = 0, dy = 0;  // of unit length together
-  double length = 0;
-  double slope = 0;  // map's unit a pixel
-};
-
-Rise RiseTo(const MapPlace& place, const MapPlace& camera) {
-  const Eigen::Vector3d way = camera - place;
-  const double length = std::hypot(way.x(), way.y());
-  return {way.x() / length, way.y() / length, length, way.z() / length};
-}
 
 // From `begin` pixels of the way on, a block at a time, or a region where all around is lower.
 bool IsHiddenByBlocks(const BlockRelief& blocks, const MapPlace& place, const Rise& rise,
@@ -43,7 +31,7 @@ bool IsBlockHidden(const BlockRelief& blocks, int x, int y, const MapPlace& came
                    double pixel_size) {
   const MapPlace place((x + 0.5) * kBlockSize, (y + 0.5) * kBlockSize,
                        double{blocks.mean[blocks.At(x, y)]});
-  return IsHiddenByBlocks(blocks, place, RiseTo(place, camera), kBlockSize,
+  return IsHiddenByBlocks(blocks, place, LineOfSight::RiseTo(place, camera), kBlockSize,
                           kBlockSize * pixel_size);
 }
 
@@ -73,8 +61,13 @@ LineOfSight::LineOfSight(const ReliefTile& tile, const MapGrid::Box& box, const 
   }
 }
 
-bool LineOfSight::IsHidden(const MapPlace& place, const MapPlace& camera) const {
-  const Rise rise = RiseTo(place, camera);
+Rise LineOfSight::RiseTo(const MapPlace& place, const MapPlace& camera) {
+  const Eigen::Vector3d way = camera - place;
+  const double length = std::hypot(way.x(), way.y());
+  return {way.x() / length, way.y() / length, length, way.z() / length};
+}
+
+bool LineOfSight::IsHiddenAlong(const MapPlace& place, const Rise& rise) const {
   if (!(rise.length > 1)) return false;
   const double first_x = place.x() - box_.x + kReliefMargin;
   const double first_y = place.y() - box_.y + kReliefMargin;
