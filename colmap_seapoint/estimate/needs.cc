@@ -20,7 +20,8 @@ constexpr double kDatabases = 2.5;
 constexpr double kModelsOfPicture = 0.4e6;
 constexpr double kCloudPoint = 43;
 constexpr double kMapPixel = 20;         // depth, normal, undistorted picture
-constexpr double kOrthomosaicPixel = 6;  // of a picture: a part of its pixels is in the map
+// Of a picture, while the map is made: 2 of them stay. A part of its pixels is in the map.
+constexpr double kOrthomosaicPixel = 6;
 constexpr double kMemoryOfProgram = 180e6;
 constexpr double kMemoryOfPicture = 1.8e6;  // of the model, while it is adjusted
 constexpr double kMostPicturesInMemory = 1000;

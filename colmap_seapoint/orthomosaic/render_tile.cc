@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <tuple>
@@ -96,6 +97,11 @@ class TileCanvas {
   void AddPatch(int x, int y, std::vector<Patch>* patches) const;
   void DrawPatch(const Patch& patch, Brush* brush);
   std::vector<Gap> FindGaps(int rank) const;
+  MapGrid::Box Within(int x, int y, int width, int height) const {  // what of it is in the tile
+    const int left = std::max(x, 0), top = std::max(y, 0);
+    return {left, top, std::min(x + width, box_.width) - left,
+            std::min(y + height, box_.height) - top};
+  }
   void AddColor(int x, int y, uint32_t picture, const Light& light, float weight);
   size_t At(int x, int y) const {
     return static_cast<size_t>(y) * static_cast<size_t>(box_.width) + static_cast<size_t>(x);
@@ -124,9 +130,9 @@ class TileCanvas::Brush {
     camera_ << grid.PixelOf(view_.Center().x(), view_.Center().y()), view_.Center().z();
   }
 
-  // The pixels to come are around this one of the tile, within a block or two: what the lens does,
-  // and the exposure, are worked out here and taken for linear there.
-  void MoveTo(int x, int y);
+  // The pixels to come are in this part of the tile, no larger than a block: what the lens and the
+  // exposure do is worked out in its middle and taken for linear. False where it has no surface.
+  bool MoveTo(const MapGrid::Box& area);
 
   // False where the picture does not show the pixel of the tile.
   bool ColorOf(int x, int y, Light* light) const {
@@ -144,15 +150,19 @@ class TileCanvas::Brush {
   }
 
  private:
-  MapPlace PlaceAt(int x, int y) const {
-    const float height = canvas_.relief_.heights.At(x + kReliefMargin, y + kReliefMargin);
-    return {canvas_.box_.x + x + 0.5, canvas_.box_.y + y + 0.5, double{height}};
+  float HeightAt(int x, int y) const {
+    return canvas_.relief_.heights.At(x + kReliefMargin, y + kReliefMargin);
   }
-  // Seen from afar, all of a block looks the same way.
+  MapPlace PlaceAt(int x, int y) const {
+    return {canvas_.box_.x + x + 0.5, canvas_.box_.y + y + 0.5, double{HeightAt(x, y)}};
+  }
+  // From afar, all of a block lies in one direction of the camera.
   bool IsHidden(const MapPlace& place) const {
     constexpr double kFar = 20 * kBlockSize;
     if (!(rise_.length > kFar)) return canvas_.sight_.IsHidden(place, camera_);
-    return canvas_.sight_.IsHiddenAlong(place, rise_);
+    Rise rise = rise_;
+    rise.slope = (camera_.z() - place.z()) / rise.length;
+    return canvas_.sight_.IsHiddenAlong(place, rise);
   }
   void Restore(const MapPlace& place, Light* light) const {
     const Eigen::Vector2d on_map = canvas_.scene_.relief.Grid().PlaceOf(place.x(), place.y());
@@ -173,16 +183,26 @@ class TileCanvas::Brush {
   Rise rise_;
 };
 
-void TileCanvas::Brush::MoveTo(int x, int y) {
-  if (picture_->Empty()) return;
-  const MapPlace place = PlaceAt(x, y);
-  projection_.emplace(view_, canvas_.scene_.relief.Grid(), place);
-  rise_ = LineOfSight::RiseTo(place, camera_);
-  const auto pixel = projection_->PixelOf(place);
-  if (!pixel) return;
-  exposure_ = LocalExposure(canvas_.scene_.exposure, picture_idx_, *picture_,
-                            static_cast<float>(scale_x_ * pixel->x()),
-                            static_cast<float>(scale_y_ * pixel->y()));
+bool TileCanvas::Brush::MoveTo(const MapGrid::Box& area) {
+  float lowest = std::numeric_limits<float>::infinity();
+  for (int y = area.y; y < area.y + area.height; ++y) {
+    for (int x = area.x; x < area.x + area.width; ++x) {
+      if (canvas_.relief_.surface.At(x, y) != 0) lowest = std::min(lowest, HeightAt(x, y));
+    }
+  }
+  if (!std::isfinite(lowest) || picture_->Empty()) return false;
+  const MapPlace middle(canvas_.box_.x + area.x + 0.5 * area.width,
+                        canvas_.box_.y + area.y + 0.5 * area.height, double{lowest});
+  projection_.emplace(view_, canvas_.scene_.relief.Grid(), middle);
+  rise_ = LineOfSight::RiseTo(middle, camera_);
+  rise_.reach = canvas_.sight_.ReachOf(middle, rise_);
+  exposure_ = LocalExposure();
+  if (const auto pixel = projection_->PixelOf(middle)) {
+    exposure_ = LocalExposure(canvas_.scene_.exposure, picture_idx_, *picture_,
+                              static_cast<float>(scale_x_ * pixel->x()),
+                              static_cast<float>(scale_y_ * pixel->y()));
+  }
+  return true;
 }
 
 void TileCanvas::AddPatch(int x, int y, std::vector<Patch>* patches) const {
@@ -219,17 +239,16 @@ void TileCanvas::DrawPatch(const Patch& patch, Brush* brush) {
   constexpr float kStep = 1.0f / kBlockSize;
   const int left = patch.x * kBlockSize + kBlockSize / 2 - box_.x;
   const int top = patch.y * kBlockSize + kBlockSize / 2 - box_.y;
-  bool is_there = false;
-  for (int y = std::max(top, 0); y < std::min(top + kBlockSize, box_.height); ++y) {
-    for (int x = std::max(left, 0); x < std::min(left + kBlockSize, box_.width); ++x) {
+  const MapGrid::Box area = Within(left, top, kBlockSize, kBlockSize);
+  if (!brush->MoveTo(area)) return;
+  for (int y = area.y; y < area.y + area.height; ++y) {
+    for (int x = area.x; x < area.x + area.width; ++x) {
       if (relief_.surface.At(x, y) == 0) continue;
       const float fx = (static_cast<float>(x - left) + 0.5f) * kStep;
       const float fy = (static_cast<float>(y - top) + 0.5f) * kStep;
       const float corner[4] = {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
       float weight = 0;
       for (int k = 0; k < 4; ++k) weight += patch.corners >> k & 1 ? corner[k] : 0;
-      if (!is_there) brush->MoveTo(x, y);
-      is_there = true;
       Light light;
       if (!brush->ColorOf(x, y, &light)) continue;
       AddColor(x, y, patch.picture, light, weight * weight * weight * weight);
@@ -274,11 +293,11 @@ void TileCanvas::DrawOthers() {
     for (size_t i = 0; i < gaps.size();) {
       const uint32_t picture = gaps[i].picture;
       Brush brush(*this, picture);
-      for (size_t of_row = i; i < gaps.size() && gaps[i].picture == picture; ++i) {
-        const bool is_near = gaps[i].y == gaps[of_row].y && gaps[i].x - gaps[of_row].x < kBlockSize;
-        if (i == of_row || !is_near) {
-          brush.MoveTo(gaps[i].x, gaps[i].y);
-          of_row = i;
+      for (int x = -kBlockSize, y = -1; i < gaps.size() && gaps[i].picture == picture; ++i) {
+        if (gaps[i].y != y || gaps[i].x >= x + kBlockSize) {
+          x = gaps[i].x;
+          y = gaps[i].y;
+          if (!brush.MoveTo(Within(x, y, kBlockSize, 1))) continue;
         }
         Light light;
         if (brush.ColorOf(gaps[i].x, gaps[i].y, &light)) {

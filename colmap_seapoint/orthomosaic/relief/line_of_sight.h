@@ -17,6 +17,7 @@ struct Rise {
   double dx = 0, dy = 0;  // of unit length together
   double length = 0;      // pixels
   double slope = 0;       // map's unit a pixel
+  double reach = 0;       // pixels of the way that are looked along
 };
 
 // By blocks alone: what may be seen at all. The mean heights of blocks hide less than the surface
@@ -37,9 +38,14 @@ class LineOfSight {
   }
   // The same on a way that is known.
   bool IsHiddenAlong(const MapPlace& place, const Rise& rise) const;
-  static Rise RiseTo(const MapPlace& place, const MapPlace& camera);
+  // Beyond so many pixels of the way nothing hides what lies within half a block of the place and
+  // not below it.
+  double ReachOf(const MapPlace& place, const Rise& rise) const;
+  static Rise RiseTo(const MapPlace& place, const MapPlace& camera);  // all of it is looked along
 
  private:
+  double TopAround(double x, double y) const;
+
   const FloatImage& heights_;
   const MapGrid::Box box_;
   const BlockRelief& blocks_;
