@@ -45,8 +45,8 @@ colmap_seapoint/navigation      colmap_seapoint/base colmap_seapoint/io/files co
 colmap_seapoint/compare         colmap_seapoint/base colmap_seapoint/io/cloud
 colmap_seapoint/orthomosaic/ground colmap_seapoint/base colmap_seapoint/io/files
 colmap_seapoint/orthomosaic/relief colmap_seapoint/base colmap_seapoint/io/cloud colmap_seapoint/orthomosaic/ground
-colmap_seapoint/orthomosaic/sources colmap_seapoint/base colmap_seapoint/orthomosaic/ground colmap_seapoint/orthomosaic/relief
-colmap_seapoint/orthomosaic     colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/orthomosaic/*
+colmap_seapoint/orthomosaic/sources colmap_seapoint/base colmap_seapoint/water colmap_seapoint/orthomosaic/ground colmap_seapoint/orthomosaic/relief
+colmap_seapoint/orthomosaic     colmap_seapoint/base colmap_seapoint/water colmap_seapoint/io/files colmap_seapoint/orthomosaic/*
 colmap_seapoint/tracks          colmap_seapoint/base colmap_seapoint/io/colmap
 colmap_seapoint/adjustment/equations colmap_seapoint/base
 colmap_seapoint/adjustment      colmap_seapoint/base colmap_seapoint/adjustment/equations
@@ -64,10 +64,11 @@ colmap_seapoint/water           colmap_seapoint/base
 colmap_seapoint/gaps            colmap_seapoint/base colmap_seapoint/io/files densify/completeness densify/completeness/*
 colmap_seapoint/workspace       colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/pictures
 colmap_seapoint/pipeline/intake colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/pictures colmap_seapoint/frames colmap_seapoint/workspace
-colmap_seapoint/pipeline        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/compare colmap_seapoint/estimate colmap_seapoint/georeference colmap_seapoint/navigation colmap_seapoint/mapping colmap_seapoint/cameras colmap_seapoint/pictures colmap_seapoint/frames colmap_seapoint/pairing colmap_seapoint/report colmap_seapoint/gaps colmap_seapoint/workspace colmap_seapoint/pipeline/intake feature feature/* densify densify/*
+colmap_seapoint/pipeline        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/compare colmap_seapoint/estimate colmap_seapoint/georeference colmap_seapoint/navigation colmap_seapoint/mapping colmap_seapoint/cameras colmap_seapoint/pictures colmap_seapoint/frames colmap_seapoint/pairing colmap_seapoint/report colmap_seapoint/gaps colmap_seapoint/workspace colmap_seapoint/pipeline/intake colmap_seapoint/pipeline/orthomosaic colmap_seapoint/orthomosaic colmap_seapoint/orthomosaic/ground feature feature/* densify densify/*
+colmap_seapoint/pipeline/orthomosaic colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/* colmap_seapoint/orthomosaic colmap_seapoint/orthomosaic/ground colmap_seapoint/pictures colmap_seapoint/report colmap_seapoint/workspace
 colmap_seapoint/pipeline/markers colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/pictures colmap_seapoint/report colmap_seapoint/workspace
 colmap_seapoint/rendering       colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/workspace
-colmap_seapoint/cli             colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files colmap_seapoint/pipeline colmap_seapoint/pipeline/markers colmap_seapoint/rendering
+colmap_seapoint/cli             colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files colmap_seapoint/pipeline colmap_seapoint/pipeline/markers colmap_seapoint/pipeline/orthomosaic colmap_seapoint/rendering
 colmap_seapoint                 colmap_seapoint/base colmap_seapoint/system colmap_seapoint/cli
 END
 

@@ -20,6 +20,7 @@ enum class Work : int {
   kJoining,        // models tried to be made one
   kDensification,  // steps of the densifier
   kMaps,           // depth maps
+  kOrthomosaic,    // pictures that a map is made of
   kOther,          // nothing that is planned
 };
 inline constexpr int kNumWorks = static_cast<int>(Work::kOther) + 1;

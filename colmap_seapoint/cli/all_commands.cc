@@ -7,6 +7,7 @@
 #include "colmap_seapoint/pipeline/markers/marker_finder.h"
 #include "colmap_seapoint/pipeline/markers/print_markers.h"
 #include "colmap_seapoint/pipeline/match.h"
+#include "colmap_seapoint/pipeline/orthomosaic/map_maker.h"
 #include "colmap_seapoint/pipeline/reconstruct.h"
 #include "colmap_seapoint/pipeline/scale.h"
 #include "colmap_seapoint/rendering/render_cloud.h"
@@ -35,6 +36,8 @@ std::vector<Command> AllCommands() {
                   RunCloudComparer),
       MakeCommand("cloud_exporter", "a cloud -> LAS or LAZ, where it lies on the Earth",
                   RunCloudExporter),
+      MakeCommand("orthomosaic", "model, pictures and cloud -> relief and orthomosaic, as GeoTIFFs",
+                  RunOrthomosaic),
       MakeCommand("completeness_reporter",
                   "what a cloud covers, what is missing, why, and a route that closes it",
                   RunCompletenessReporter),

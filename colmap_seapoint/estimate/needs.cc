@@ -19,7 +19,9 @@ constexpr double kDatabaseOfPicture = 0.5e6;  // its copies for the mapper come 
 constexpr double kDatabases = 2.5;
 constexpr double kModelsOfPicture = 0.4e6;
 constexpr double kCloudPoint = 43;
-constexpr double kMapPixel = 20;  // depth, normal, undistorted picture
+constexpr double kMapPixel = 20;         // depth, normal, undistorted picture
+// Of a picture, while the map is made: 2 of them stay. A part of its pixels is in the map.
+constexpr double kOrthomosaicPixel = 6;
 constexpr double kMemoryOfProgram = 180e6;
 constexpr double kMemoryOfPicture = 1.8e6;  // of the model, while it is adjusted
 constexpr double kMostPicturesInMemory = 1000;
@@ -36,7 +38,8 @@ Needs ExpectedNeeds(const JobSize& size) {
   const double pixels = 1e6 * size.megapixels / std::max(n, 1.0);
   const double samples =
       size.step > 0 ? pixels / (size.step * size.step) : std::min(pixels, kSamplesOfPicture);
-  const double maps = size.writes_maps ? kMapPixel * pixels : 0;
+  const double maps = (size.writes_maps ? kMapPixel * pixels : 0) +
+                      (size.makes_map ? kOrthomosaicPixel * pixels : 0);
   Needs needs;
   needs.disk_bytes = static_cast<uint64_t>(n * (kDatabases * kDatabaseOfPicture + kModelsOfPicture +
                                                 kNewSamples * samples * kCloudPoint + maps));
@@ -96,6 +99,7 @@ std::string TimesText(const OfWork<WorkCost>& costs, const OfWork<bool>& done_be
   add("markers", {Work::kMarkers});
   add("mapping", {Work::kRegistration, Work::kRefinement});
   add("cloud", {Work::kDensification, Work::kMaps});
+  add("map", {Work::kOrthomosaic});
   return "About " + DurationText(seconds_left) + " on this machine" +
          (stages.empty() ? "" : ": " + stages);
 }

@@ -26,6 +26,8 @@ constexpr double kDensifiedMegapixels = 0.75;
 constexpr double kDensifiedMegapixelSeconds = 0.35;
 constexpr double kRectifiedMegapixelSeconds = 0.06;
 constexpr double kMapSeconds = 0.05;
+constexpr double kOrthomosaicSeconds = 0.01;
+constexpr double kOrthomosaicMegapixelSeconds = 0.19;
 
 // How many threads are kept busy, of those that there are. The mapper has one.
 double Busy(int num_threads) { return 0.15 + 0.85 * std::max(num_threads, 1); }
@@ -63,6 +65,10 @@ OfWork<WorkCost> ExpectedCosts(const JobSize& size, const OfWork<double>& machin
                            kRectifiedMegapixelSeconds * megapixels;
   set(Work::kDensification, kStepsOfPicture * n, densified / kStepsOfPicture / threads);
   if (size.writes_maps) set(Work::kMaps, n, kMapSeconds * megapixels / threads);
+  if (size.makes_map) {
+    set(Work::kOrthomosaic, n,
+        (kOrthomosaicSeconds + kOrthomosaicMegapixelSeconds * megapixels) / threads);
+  }
   return costs;
 }
 

@@ -23,6 +23,7 @@ struct JobSize {
   int step = 0;           // pixels between samples of the cloud; 0 = about 0.75 million a picture
   bool finds_look_alikes = false;
   bool writes_maps = false;
+  bool makes_map = false;
   bool finds_markers = false;
   // To be made into pictures before all else, of one kind or the other.
   int64_t num_copies = 0;         // pictures in HEIC and RAW

@@ -7,13 +7,14 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/median.h"
 #include "colmap_seapoint/base/parallel.h"
-#include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/orthomosaic/relief/cloud_tiles.h"
 #include "colmap_seapoint/orthomosaic/relief/relief.h"
 #include "colmap_seapoint/orthomosaic/render_tile.h"
 #include "colmap_seapoint/orthomosaic/sources/block_colors.h"
 #include "colmap_seapoint/orthomosaic/sources/exposure.h"
 #include "colmap_seapoint/orthomosaic/sources/seams.h"
+#include "colmap_seapoint/orthomosaic/sources/water_samples.h"
+#include "colmap_seapoint/water/estimate_water.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -21,6 +22,9 @@ namespace {
 constexpr size_t kGsdPoints = 1000;
 constexpr int kMaxReduction = 8;
 constexpr int kMaxTilesAtOnce = 6;  // about 50 MB each
+
+// Of the time that a map takes.
+constexpr double kReliefShare = 0.25, kSourcesShare = 0.25;
 
 std::vector<Eigen::Vector3d> InMap(const MapFrame& frame, std::vector<Eigen::Vector3d> points) {
   for (Eigen::Vector3d& point : points) point = frame.map_from_cloud * point;
@@ -36,7 +40,8 @@ double FindGsd(const std::vector<MapView>& views, const std::vector<Eigen::Vecto
   const std::optional<double> gsd = SurveyGsd(views, points);
   if (!gsd) {
     throw Error(cloud_path,
-                "lies where no picture of the model looks: they are of different frames",
+                "lies, but for less than half, where no picture of the model looks: they are of "
+                "different frames",
                 "give the model that this cloud was made from");
   }
   return *gsd;
@@ -96,22 +101,21 @@ class TileWriter {
   std::vector<uint8_t> is_used_;
 };
 
-void RenderTiles(const MapScene& scene, int num_threads, MapPictures* pictures,
+void RenderTiles(const MapScene& scene, int num_threads,
+                 const std::function<void(double)>& progress, MapPictures* pictures,
                  TileWriter* writer) {
   std::vector<int> tiles = TilesAlongCurve(scene.relief.Grid());
   tiles.erase(std::remove_if(tiles.begin(), tiles.end(),
                              [&](int tile) { return !scene.relief.HasSurface(tile); }),
               tiles.end());
-  Progress progress("Tiles of the map", static_cast<int64_t>(tiles.size()));
   OrderedPipeline<MapTile>(
       num_threads, static_cast<int64_t>(tiles.size()),
       std::min(EffectiveNumThreads(num_threads), kMaxTilesAtOnce),
       [&](int64_t i) { return RenderTile(scene, tiles[static_cast<size_t>(i)], pictures); },
       [&](int64_t i, MapTile&& tile) {
         writer->Take(std::move(tile));
-        progress.Update(i + 1);
+        progress(static_cast<double>(i + 1) / static_cast<double>(tiles.size()));
       });
-  progress.Finish();
 }
 
 // The points by tiles are gone again when the relief is there.
@@ -124,11 +128,25 @@ Relief MakeRelief(const OrthomosaicOptions& options, const OrthomosaicInputs& in
   return Relief(cloud, summary->grid, options.fill, options.num_threads, inputs.temporary_folder);
 }
 
+// nullopt where the survey does not tell what the water does; else the sources are restored.
+std::optional<Restoration> RestoreColors(const Relief& relief, const std::vector<MapView>& views,
+                                         SourceBlocks* sources, OrthomosaicSummary* summary) {
+  summary->water = EstimateWater(CollectWaterSamples(relief, views, *sources));
+  const double max_range = MaxRange(relief, views, *sources);
+  if (!summary->water->IsDetermined() || !(max_range > 0)) return std::nullopt;
+  const Restoration restoration(*summary->water, static_cast<float>(max_range));
+  RestoreSources(relief, views, restoration, sources);
+  return restoration;
+}
+
 }  // namespace
 
 OrthomosaicSummary MakeOrthomosaic(const OrthomosaicOptions& options,
                                    const OrthomosaicInputs& inputs, MapTileSink* sink) {
   OrthomosaicSummary summary;
+  const auto progress = [&](double before, double share, double done) {
+    if (inputs.progress) inputs.progress(before + share * done);
+  };
   const std::vector<Eigen::Vector3d> cloud_sample = SampleCloud(inputs.cloud_path);
   summary.frame = FindMapFrame(options.plane, inputs.model, cloud_sample, inputs.units);
   const std::vector<Eigen::Vector3d> sample = InMap(summary.frame, cloud_sample);
@@ -138,18 +156,29 @@ OrthomosaicSummary MakeOrthomosaic(const OrthomosaicOptions& options,
 
   const double ground = MedianHeight(sample);
   const Relief relief = MakeRelief(options, inputs, ground, &summary);
+  progress(0, kReliefShare, 1);
 
   MapPictures pictures(inputs.read, Reductions(views, ground, summary.grid.pixel_size),
                        options.picture_bytes);
   SourceBlocks sources = FindSources(relief, views, options.num_threads);
-  summary.pictures_unread = LookAtSources(relief, views, options.num_threads, &pictures, &sources);
+  const auto num_views = static_cast<double>(views.size());
+  summary.pictures_unread = LookAtSources(
+      relief, views, options.num_threads,
+      [&](int64_t i) { progress(kReliefShare, kSourcesShare, static_cast<double>(i) / num_views); },
+      &pictures, &sources);
+  const std::optional<Restoration> restoration =
+      options.restore ? RestoreColors(relief, views, &sources, &summary) : std::nullopt;
   const Exposure exposure =
       options.balance ? BalanceExposure(relief, views, sources) : EqualExposure(views.size());
   ChooseSources(relief.Blocks(), exposure, options.num_threads, &sources);
 
   sink->Begin(summary.frame, summary.grid);
   TileWriter writer(views.size(), sink, &summary);
-  RenderTiles({relief, views, sources, exposure}, options.num_threads, &pictures, &writer);
+  constexpr double kBefore = kReliefShare + kSourcesShare;
+  RenderTiles(
+      {relief, views, sources, exposure, restoration ? &*restoration : nullptr},
+      options.num_threads, [&](double share) { progress(kBefore, 1 - kBefore, share); }, &pictures,
+      &writer);
   summary.pictures_used = writer.PicturesUsed();
   summary.num_picture_reads = pictures.NumReads();
   return summary;

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <tuple>
 #include <utility>
 
+#include "colmap_seapoint/orthomosaic/patch_projection.h"
 #include "colmap_seapoint/orthomosaic/relief/line_of_sight.h"
 
 namespace colmap_seapoint {
@@ -42,6 +45,37 @@ struct Sum {  // of what pictures show of a pixel
   float highest = 0;  // weight of any one of them
 };
 
+// What a picture's light is multiplied with about one place of it, linear in its pixels.
+class LocalExposure {
+ public:
+  LocalExposure() = default;
+  LocalExposure(const Exposure& exposure, uint32_t picture_idx, const Picture& picture, float x,
+                float y)
+      : x_(x), y_(y) {
+    const auto at = [&](float px, float py) {
+      return exposure.FactorAt(picture_idx, px / static_cast<float>(picture.luma.width),
+                               py / static_cast<float>(picture.luma.height));
+    };
+    constexpr float kStep = kBlockSize;
+    factor_ = at(x, y);
+    const Light right = at(x + kStep, y), below = at(x, y + kStep);
+    for (size_t c = 0; c < 3; ++c) {
+      along_x_[c] = (right[c] - factor_[c]) / kStep;
+      along_y_[c] = (below[c] - factor_[c]) / kStep;
+    }
+  }
+
+  void Apply(float x, float y, Light* light) const {
+    for (size_t c = 0; c < 3; ++c) {
+      (*light)[c] *= factor_[c] + (x - x_) * along_x_[c] + (y - y_) * along_y_[c];
+    }
+  }
+
+ private:
+  float x_ = 0, y_ = 0;
+  Light factor_ = {1, 1, 1}, along_x_ = {0, 0, 0}, along_y_ = {0, 0, 0};
+};
+
 class TileCanvas {
  public:
   TileCanvas(const MapScene& scene, int tile_idx, MapPictures* pictures)
@@ -61,8 +95,13 @@ class TileCanvas {
  private:
   class Brush;
   void AddPatch(int x, int y, std::vector<Patch>* patches) const;
-  void DrawPatch(const Patch& patch, const Brush& brush);
+  void DrawPatch(const Patch& patch, Brush* brush);
   std::vector<Gap> FindGaps(int rank) const;
+  MapGrid::Box Within(int x, int y, int width, int height) const {  // what of it is in the tile
+    const int left = std::max(x, 0), top = std::max(y, 0);
+    return {left, top, std::min(x + width, box_.width) - left,
+            std::min(y + height, box_.height) - top};
+  }
   void AddColor(int x, int y, uint32_t picture, const Light& light, float weight);
   size_t At(int x, int y) const {
     return static_cast<size_t>(y) * static_cast<size_t>(box_.width) + static_cast<size_t>(x);
@@ -91,32 +130,80 @@ class TileCanvas::Brush {
     camera_ << grid.PixelOf(view_.Center().x(), view_.Center().y()), view_.Center().z();
   }
 
+  // The pixels to come are in this part of the tile, no larger than a block: what the lens and the
+  // exposure do is worked out in its middle and taken for linear. False where it has no surface.
+  bool MoveTo(const MapGrid::Box& area);
+
   // False where the picture does not show the pixel of the tile.
   bool ColorOf(int x, int y, Light* light) const {
-    const float height = canvas_.relief_.heights.At(x + kReliefMargin, y + kReliefMargin);
-    const MapPlace place(canvas_.box_.x + x + 0.5, canvas_.box_.y + y + 0.5, double{height});
-    const Eigen::Vector2d on_map = canvas_.scene_.relief.Grid().PlaceOf(place.x(), place.y());
-    const auto pixel = view_.PixelOf({on_map.x(), on_map.y(), place.z()});
-    if (!pixel || picture_->Empty()) return false;  // a file may be gone by now
+    if (picture_->Empty()) return false;  // a file may be gone by now
+    const MapPlace place = PlaceAt(x, y);
+    const auto pixel = projection_->PixelOf(place);
+    if (!pixel) return false;
     const auto px = static_cast<float>(scale_x_ * pixel->x());
     const auto py = static_cast<float>(scale_y_ * pixel->y());
-    if (IsMasked(*picture_, px, py) || canvas_.sight_.IsHidden(place, camera_)) return false;
+    if (IsMasked(*picture_, px, py) || IsHidden(place)) return false;
     *light = LightAt(*picture_, px, py);
-    const Light factor = canvas_.scene_.exposure.FactorAt(
-        picture_idx_, px / static_cast<float>(picture_->luma.width),
-        py / static_cast<float>(picture_->luma.height));
-    for (size_t c = 0; c < 3; ++c) (*light)[c] *= factor[c];
+    if (canvas_.scene_.restoration != nullptr) Restore(place, light);
+    exposure_.Apply(px, py, light);
     return true;
   }
 
  private:
+  float HeightAt(int x, int y) const {
+    return canvas_.relief_.heights.At(x + kReliefMargin, y + kReliefMargin);
+  }
+  MapPlace PlaceAt(int x, int y) const {
+    return {canvas_.box_.x + x + 0.5, canvas_.box_.y + y + 0.5, double{HeightAt(x, y)}};
+  }
+  // From afar, all of a block lies in one direction of the camera.
+  bool IsHidden(const MapPlace& place) const {
+    constexpr double kFar = 20 * kBlockSize;
+    if (!(rise_.length > kFar)) return canvas_.sight_.IsHidden(place, camera_);
+    Rise rise = rise_;
+    rise.slope = (camera_.z() - place.z()) / rise.length;
+    return canvas_.sight_.IsHiddenAlong(place, rise);
+  }
+  void Restore(const MapPlace& place, Light* light) const {
+    const Eigen::Vector2d on_map = canvas_.scene_.relief.Grid().PlaceOf(place.x(), place.y());
+    const Eigen::Vector3d in_map(on_map.x(), on_map.y(), place.z());
+    const double range = (view_.Center() - in_map).norm();
+    *light = (*canvas_.scene_.restoration)(*light, static_cast<float>(range),
+                                           static_cast<float>(view_.DepthOf(in_map) / range));
+  }
+
   const TileCanvas& canvas_;
   const MapView& view_;
   uint32_t picture_idx_;
   std::shared_ptr<const Picture> picture_;
   double scale_x_, scale_y_;
   MapPlace camera_;
+  std::optional<PatchProjection> projection_;
+  LocalExposure exposure_;
+  Rise rise_;
 };
+
+bool TileCanvas::Brush::MoveTo(const MapGrid::Box& area) {
+  float lowest = std::numeric_limits<float>::infinity();
+  for (int y = area.y; y < area.y + area.height; ++y) {
+    for (int x = area.x; x < area.x + area.width; ++x) {
+      if (canvas_.relief_.surface.At(x, y) != 0) lowest = std::min(lowest, HeightAt(x, y));
+    }
+  }
+  if (!std::isfinite(lowest) || picture_->Empty()) return false;
+  const MapPlace middle(canvas_.box_.x + area.x + 0.5 * area.width,
+                        canvas_.box_.y + area.y + 0.5 * area.height, double{lowest});
+  projection_.emplace(view_, canvas_.scene_.relief.Grid(), middle);
+  rise_ = LineOfSight::RiseTo(middle, camera_);
+  rise_.reach = canvas_.sight_.ReachOf(middle, rise_);
+  exposure_ = LocalExposure();
+  if (const auto pixel = projection_->PixelOf(middle)) {
+    exposure_ = LocalExposure(canvas_.scene_.exposure, picture_idx_, *picture_,
+                              static_cast<float>(scale_x_ * pixel->x()),
+                              static_cast<float>(scale_y_ * pixel->y()));
+  }
+  return true;
+}
 
 void TileCanvas::AddPatch(int x, int y, std::vector<Patch>* patches) const {
   const BlockRelief& blocks = scene_.relief.Blocks();
@@ -148,12 +235,14 @@ void TileCanvas::AddColor(int x, int y, uint32_t picture, const Light& light, fl
 }
 
 // Weights fall off between the blocks' centres, fast about the middle.
-void TileCanvas::DrawPatch(const Patch& patch, const Brush& brush) {
+void TileCanvas::DrawPatch(const Patch& patch, Brush* brush) {
   constexpr float kStep = 1.0f / kBlockSize;
   const int left = patch.x * kBlockSize + kBlockSize / 2 - box_.x;
   const int top = patch.y * kBlockSize + kBlockSize / 2 - box_.y;
-  for (int y = std::max(top, 0); y < std::min(top + kBlockSize, box_.height); ++y) {
-    for (int x = std::max(left, 0); x < std::min(left + kBlockSize, box_.width); ++x) {
+  const MapGrid::Box area = Within(left, top, kBlockSize, kBlockSize);
+  if (!brush->MoveTo(area)) return;
+  for (int y = area.y; y < area.y + area.height; ++y) {
+    for (int x = area.x; x < area.x + area.width; ++x) {
       if (relief_.surface.At(x, y) == 0) continue;
       const float fx = (static_cast<float>(x - left) + 0.5f) * kStep;
       const float fy = (static_cast<float>(y - top) + 0.5f) * kStep;
@@ -161,7 +250,7 @@ void TileCanvas::DrawPatch(const Patch& patch, const Brush& brush) {
       float weight = 0;
       for (int k = 0; k < 4; ++k) weight += patch.corners >> k & 1 ? corner[k] : 0;
       Light light;
-      if (!brush.ColorOf(x, y, &light)) continue;
+      if (!brush->ColorOf(x, y, &light)) continue;
       AddColor(x, y, patch.picture, light, weight * weight * weight * weight);
     }
   }
@@ -176,8 +265,8 @@ void TileCanvas::DrawChosen() {
   std::sort(patches.begin(), patches.end());
   for (size_t i = 0; i < patches.size();) {
     const uint32_t picture = patches[i].picture;
-    const Brush brush(*this, picture);
-    for (; i < patches.size() && patches[i].picture == picture; ++i) DrawPatch(patches[i], brush);
+    Brush brush(*this, picture);
+    for (; i < patches.size() && patches[i].picture == picture; ++i) DrawPatch(patches[i], &brush);
   }
 }
 
@@ -203,8 +292,13 @@ void TileCanvas::DrawOthers() {
     std::sort(gaps.begin(), gaps.end());
     for (size_t i = 0; i < gaps.size();) {
       const uint32_t picture = gaps[i].picture;
-      const Brush brush(*this, picture);
-      for (; i < gaps.size() && gaps[i].picture == picture; ++i) {
+      Brush brush(*this, picture);
+      for (int x = -kBlockSize, y = -1; i < gaps.size() && gaps[i].picture == picture; ++i) {
+        if (gaps[i].y != y || gaps[i].x >= x + kBlockSize) {
+          x = gaps[i].x;
+          y = gaps[i].y;
+          if (!brush.MoveTo(Within(x, y, kBlockSize, 1))) continue;
+        }
         Light light;
         if (brush.ColorOf(gaps[i].x, gaps[i].y, &light)) {
           AddColor(gaps[i].x, gaps[i].y, picture, light, 1);

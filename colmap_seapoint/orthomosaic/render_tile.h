@@ -8,6 +8,7 @@
 #include "colmap_seapoint/orthomosaic/sources/exposure.h"
 #include "colmap_seapoint/orthomosaic/sources/map_pictures.h"
 #include "colmap_seapoint/orthomosaic/sources/source_blocks.h"
+#include "colmap_seapoint/water/restoration.h"
 
 namespace colmap_seapoint {
 
@@ -16,6 +17,7 @@ struct MapScene {  // all that a tile is drawn from
   const std::vector<MapView>& views;
   const SourceBlocks& sources;
   const Exposure& exposure;
+  const Restoration* restoration = nullptr;  // before the exposure; nullptr: colours as they are
 };
 
 // Each pixel's place on the surface is looked up in the picture that its block has chosen, between

@@ -17,6 +17,7 @@
 #include "colmap_seapoint/io/image/picture_masks.h"
 #include "colmap_seapoint/io/outputs/output_folder.h"
 #include "colmap_seapoint/mapping/mapper_process.h"
+#include "colmap_seapoint/pictures/model_inputs.h"
 #include "colmap_seapoint/pictures/model_pictures.h"
 #include "colmap_seapoint/pictures/picture_scale.h"
 #include "colmap_seapoint/pictures/read_rig.h"
@@ -70,49 +71,6 @@ std::vector<std::string> NamesOf(const SparseModel& model) {
   std::vector<std::string> names;
   for (const PosedImage& image : model.images) names.push_back(image.name);
   return names;
-}
-
-// Sees a folder of foreign pictures before hours of work.
-void CheckPictures(const PartialDensifierOptions& options, const SparseModel& model,
-                   const ModelPictures& pictures) {
-  std::string first_problem;
-  for (size_t i = 0; i < model.images.size(); ++i) {
-    const std::string problem = pictures.Check(static_cast<int>(i));
-    if (problem.empty()) return;
-    if (first_problem.empty()) first_problem = model.images[i].name + ": " + problem;
-  }
-  if (model.images.empty()) {
-    throw Error(options.input_path, "the model holds no pictures",
-                "give a model of COLMAP's mapper");
-  }
-  throw Error(options.image_path,
-              "none of the model's " + std::to_string(model.images.size()) +
-                  " pictures can be used (" + first_problem + ")",
-              "give the --image_path that the model was made from, reduced or in full");
-}
-
-// On all threads: pictures that densification did not read are read now, and a survey takes long to
-// read.
-void DescribeInputs(const PartialDensifierOptions& options, const ModelPictures& pictures,
-                    RunReport* report) {
-  std::vector<std::string> model_files;
-  for (const auto& entry : std::filesystem::directory_iterator(options.input_path)) {
-    const std::string extension = entry.path().extension().string();
-    if (extension == ".bin" || extension == ".txt") model_files.push_back(entry.path().string());
-  }
-  std::sort(model_files.begin(), model_files.end());
-  const auto num_images = static_cast<size_t>(report->images_in);
-  report->inputs.resize(num_images + model_files.size());
-  ParallelFor(options.run.num_threads, static_cast<int64_t>(report->inputs.size()),
-              [&](int64_t index) {
-                const auto i = static_cast<size_t>(index);
-                if (i < num_images) {
-                  report->inputs[i] = pictures.Describe(static_cast<int>(i));
-                } else {
-                  const std::string& path = model_files[i - num_images];
-                  report->inputs[i] = DescribeInput(path, path);
-                }
-              });
 }
 
 // Seconds of each stage over all pairs: wall time on the threads that did the work.
@@ -276,7 +234,7 @@ RunReport DensifyModel(const PartialDensifierOptions& options, ColmapDatabase* d
     report.images_in = static_cast<int64_t>(model.images.size());
     ModelPictures pictures(model, options.image_path, PictureMasks(options.mask_path), database,
                            options.extraction, options.matching);
-    CheckPictures(options, model, pictures);
+    CheckModelPictures(pictures, model, options.image_path, options.input_path);
     if (database != nullptr && pictures.NumInDatabase() == 0) {
       LogWarning(options.database_path +
                  " holds SeaPoints of no picture of the model: they are "
@@ -286,7 +244,8 @@ RunReport DensifyModel(const PartialDensifierOptions& options, ColmapDatabase* d
     const std::unique_ptr<MapWriter> maps = StartMaps(options, model, &folder);
     CloudWriter cloud(output / "fused.ply");
     sequence = Densify(options, model, rig, &pictures, &cloud, maps.get());
-    DescribeInputs(options, pictures, &report);
+    report.inputs = DescribeModelInputs(pictures, model.images.size(), options.input_path,
+                                        options.run.num_threads);
     FillReport(model, sequence, &report);
     LogPairSeconds(sequence);
     report.points = static_cast<int64_t>(cloud.NumPoints());

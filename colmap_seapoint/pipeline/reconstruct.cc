@@ -30,6 +30,7 @@
 #include "colmap_seapoint/pipeline/intake/take_in.h"
 #include "colmap_seapoint/pipeline/map.h"
 #include "colmap_seapoint/pipeline/match.h"
+#include "colmap_seapoint/pipeline/orthomosaic_models.h"
 #include "colmap_seapoint/pipeline/scale_models.h"
 #include "colmap_seapoint/report/reconstruction_summary.h"
 #include "colmap_seapoint/workspace/workspace_database.h"
@@ -82,6 +83,7 @@ JobSize SizeOf(const Options& options, int64_t num_pictures, double megapixels) 
                                                  size.finds_look_alikes);
   size.step = options.densification.step;
   size.writes_maps = options.densification.write_maps;
+  size.makes_map = options.makes_map;
   size.finds_markers = !FamiliesToFind(options.scale).empty();
   size.num_threads = EffectiveNumThreads(options.run.num_threads);
   return size;
@@ -117,6 +119,7 @@ OfWork<bool> DoneBefore(const Stage& database, const WorkspaceState& state) {
     done[work] = true;
   }
   done[Work::kDensification] = done[Work::kMaps] = state.Read("dense_0").has_value();
+  done[Work::kOrthomosaic] = state.Read("map_0").has_value();
   return done;
 }
 
@@ -389,6 +392,7 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& giv
   std::vector<ModelSummary> models = ReadModels(mapping.models, &report);
   ScaleModels(options, pictures, workspace, mapping.fingerprint, &state, &models, &report);
   DensifyModels(options, workspace, mapping.fingerprint, &database, &state, &models, &report);
+  MakeMaps(options, workspace, mapping.fingerprint, &state, &models, &report);
   RememberJob(&progress);
   return WriteReport(workspace, models, report);
 }

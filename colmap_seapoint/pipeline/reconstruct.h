@@ -1,5 +1,5 @@
 // automatic_reconstructor: a folder of pictures -> SeaPoints -> matches -> colmap mapper -> dense
-// clouds. The same command again goes on where an interrupted run stopped.
+// clouds and maps. The same command again goes on where an interrupted run stopped.
 #pragma once
 
 #include "colmap_seapoint/base/run_options.h"

@@ -13,8 +13,9 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
   table->AddRequired("image_path", &image_path,
                      "folder of the pictures (JPEG, PNG, TIFF, HEIC, RAW), sub-folders included; "
                      "or a video, or a folder of clips");
-  table->AddRequired("workspace_path", &workspace_path,
-                     "folder for database.db, sparse/, dense/ and report/; created when missing");
+  table->AddRequired(
+      "workspace_path", &workspace_path,
+      "folder for database.db, sparse/, dense/, map/ and report/; created when missing");
   table->Add("colmap_path", &colmap_path, "the colmap program: a path, or a name on PATH", "ours");
   table->Add("colmap_timeout", &colmap_timeout,
              "seconds that one run of colmap may take before it is stopped; 0 = no limit", "ours",
@@ -40,6 +41,10 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
   table->Add("check_disk", &check_disk,
              "end before any work where the disk is too small by far; 0 = go on all the same",
              "ours");
+  table->Add("map", &makes_map,
+             "make relief and orthomosaic of every model, in map/; 0 = none, and those of earlier "
+             "runs are removed",
+             "ours");
   table->Add("rig", &rig, kRigHelp, "paper 4");
   table->Add("mask_path", &reader.mask_path, "the same as --ImageReader.mask_path", "COLMAP");
   scale.Bind(table);
@@ -49,6 +54,7 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
   pairs.Bind(table);
   matching.Bind(table);
   densification.Bind(table);
+  map.Bind(table, "Orthomosaic.");
   run.Bind(table);
   table->MarkOutput("workspace_path");
 }
@@ -74,6 +80,8 @@ void AutomaticReconstructorOptions::Check() const {
        {reader.Check(), extraction.Check(), densification.Check(), CheckRig(rig), scale.Check()}) {
     if (!problem.empty()) throw UsageError(problem);
   }
+  const std::string map_problem = map.Check();
+  if (!map_problem.empty()) throw UsageError("--Orthomosaic." + map_problem);
   if (!std::filesystem::exists(image_path)) {
     throw Error(image_path, "there is no such folder or video", "check --image_path");
   }

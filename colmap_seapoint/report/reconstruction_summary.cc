@@ -18,6 +18,9 @@ std::string SummaryText(const std::vector<ModelSummary>& models, const RunReport
     out << "\n  " << model.units;
     if (!model.scaling.empty()) out << " (" << model.scaling << ")";
     out << "\n";
+    if (!model.map.empty()) {
+      out << "  map in " << model.map_path.string() << ": " << model.map << "\n";
+    }
   }
   for (const RunReport::LeftOut& left_out : report.left_out) {
     out << "left out: " << left_out.name << ": " << left_out.reason << "\n";

@@ -20,6 +20,8 @@ struct ModelSummary {
   std::string units_word = "arbitrary";
   std::string scaling_fingerprint;  // of all that the units depend on; empty: not scaled
   std::string scaling;              // one line: how the scale came about; empty: not scaled
+  std::filesystem::path map_path;   // folder; empty: no map
+  std::string map;                  // one line: what it is like
 };
 
 // Plain words: pictures used and left out, models, clouds, times.

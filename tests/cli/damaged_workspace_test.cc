@@ -31,13 +31,15 @@ class DamagedWorkspace : public testing::Test {
          "400", "--PartialDensification.step", "4"});
   }
 
-  // What models and clouds hold.
+  // What models, clouds and maps hold.
   std::map<std::string, std::string> Clouds(const std::string& workspace) const {
     std::map<std::string, std::string> files;
-    for (const char* part : {"sparse", "dense"}) {
+    for (const char* part : {"sparse", "dense", "map"}) {
       for (const auto& [name, bytes] : ReadTree(folder_ / workspace / part)) {
         const std::string end = fs::path(name).extension().string();
-        if (end == ".bin" || end == ".ply" || end == ".vis") files[part + ("/" + name)] = bytes;
+        if (end == ".bin" || end == ".ply" || end == ".vis" || end == ".tif" || end == ".png") {
+          files[part + ("/" + name)] = bytes;
+        }
       }
     }
     return files;
@@ -74,6 +76,15 @@ TEST_F(DamagedWorkspace, NoVisibility) {
   ExpectWholeAgain("gone", "fused.ply.vis is gone");
 }
 
+TEST_F(DamagedWorkspace, AMap) {
+  std::string bytes = ReadBytes(folder_ / "ws/map/0/dem.tif");
+  bytes[bytes.size() / 2] ^= 1;
+  WriteBytes(folder_ / "ws/map/0/dem.tif", bytes);
+  ExpectWholeAgain("one bit", "dem.tif does not hold what was written");
+  fs::remove(folder_ / "ws/map/0/hillshade.png");
+  ExpectWholeAgain("gone", "hillshade.png is gone");
+}
+
 TEST_F(DamagedWorkspace, AModel) {
   fs::resize_file(folder_ / "ws/sparse/0/images.bin", 100);
   ExpectWholeAgain("cut", "images.bin holds 100 bytes instead of");
@@ -82,7 +93,7 @@ TEST_F(DamagedWorkspace, AModel) {
 }
 
 TEST_F(DamagedWorkspace, ARecord) {
-  for (const char* stage : {"database", "second_chance", "mapper", "dense_0"}) {
+  for (const char* stage : {"database", "second_chance", "mapper", "dense_0", "map_0"}) {
     WriteBytes(folder_ / "ws/state" / (std::string(stage) + ".json"), "{\"fingerpr");
     ExpectWholeAgain(stage, "");
   }

@@ -29,20 +29,22 @@ class Ownership : public testing::Test {
 
   std::string Path(const std::string& name) const { return (folder_ / name).string(); }
   // Few SeaPoints and coarse clouds.
-  Arguments Reconstruct(const std::string& workspace) const {
-    return {"automatic_reconstructor",
-            "--image_path",
-            Path("images"),
-            "--workspace_path",
-            Path(workspace),
-            "--colmap_path",
-            FAKE_COLMAP,
-            "--SeaPointExtraction.min_num_features",
-            "300",
-            "--SeaPointExtraction.max_num_features",
-            "400",
-            "--PartialDensification.step",
-            "4"};
+  Arguments Reconstruct(const std::string& workspace, const Arguments& more = {}) const {
+    Arguments arguments = {"automatic_reconstructor",
+                           "--image_path",
+                           Path("images"),
+                           "--workspace_path",
+                           Path(workspace),
+                           "--colmap_path",
+                           FAKE_COLMAP,
+                           "--SeaPointExtraction.min_num_features",
+                           "300",
+                           "--SeaPointExtraction.max_num_features",
+                           "400",
+                           "--PartialDensification.step",
+                           "4"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
   }
   Arguments Densify(const std::string& output, const Arguments& more = {}) const {
     Arguments arguments = {"partial_densifier",
@@ -193,7 +195,9 @@ TEST_F(Ownership, OursAreReplaced) {
   }
 }
 
-// They had no list of what is theirs.
+// They had no list of what is theirs, and made no maps.
+const Arguments kNoMap = {"--map", "0"};
+
 TEST_F(Ownership, OutputsOfEarlierVersionsAreOurs) {
   const Arguments maps = {"--PartialDensification.write_maps", "1"};
   const auto forget = [&](const std::string& folder) {
@@ -202,12 +206,12 @@ TEST_F(Ownership, OutputsOfEarlierVersionsAreOurs) {
   ExpectDone(Densify("cloud", maps));
   ExpectDone(Scale("scaled"));
   ExpectDone(Compare("c.json", {"--difference_path", Path("differences")}));
-  ExpectDone(Reconstruct("ws"));
+  ExpectDone(Reconstruct("ws", kNoMap));
   for (const char* folder : {"cloud", "scaled", "differences", "ws", "ws/dense/0"}) forget(folder);
   ExpectDone(Densify("cloud", maps));
   ExpectDone(Scale("scaled"));
   ExpectDone(Compare("c.json", {"--difference_path", Path("differences")}));
-  ExpectDone(Reconstruct("ws"));
+  ExpectDone(Reconstruct("ws", kNoMap));
   forget("ws");
   WriteStrip(folder_ / "images", 5);
   ExpectDone(Reconstruct("ws"));
@@ -215,13 +219,13 @@ TEST_F(Ownership, OutputsOfEarlierVersionsAreOurs) {
 
 // Killed while its mapper worked, so that nothing but the records tells.
 TEST_F(Ownership, AnInterruptedWorkspaceOfAnEarlierVersionGoesOn) {
-  ExpectDone(Reconstruct("ws"));
+  ExpectDone(Reconstruct("ws", kNoMap));
   for (const char* name : {".colmap_seapoint", "dense", "sparse", "state/mapper.json",
                            "state/dense_0.json", "report/run.json", "report/summary.txt"}) {
     EXPECT_GT(fs::remove_all(folder_ / "ws" / name), 0u) << name;
   }
   WriteSparseModelBinary(folder_ / "ws/sparse.tmp/trial_1/0", StripModel(4));
-  ExpectDone(Reconstruct("ws"));
+  ExpectDone(Reconstruct("ws", kNoMap));
   EXPECT_FALSE(fs::exists(folder_ / "ws/sparse.tmp"));
   // No record says that the models there are ours.
   for (const char* name :

@@ -48,8 +48,9 @@ TEST_F(Reconstructor, RunsTheWholeChain) {
   ASSERT_EQ(result.exit_code, 0) << result.Text();
   for (const char* file :
        {"database.db", "sparse/0/images.bin", "dense/0/fused.ply", "dense/0/fused.ply.vis",
-        "dense/0/pairs.csv", "dense/0/run.json", "report/summary.txt", "report/run.json",
-        "report/mapper_1_thinned.log"}) {
+        "dense/0/pairs.csv", "dense/0/run.json", "map/0/orthomosaic.tif", "map/0/dem.tif",
+        "map/0/source.tif", "map/0/hillshade.png", "map/0/orthomosaic.jpg", "map/0/map.json",
+        "report/summary.txt", "report/run.json", "report/mapper_1_thinned.log"}) {
     EXPECT_TRUE(fs::exists(Workspace() / file)) << file;
   }
   EXPECT_FALSE(fs::exists(Workspace() / "sparse.tmp"));
@@ -62,7 +63,41 @@ TEST_F(Reconstructor, RunsTheWholeChain) {
   std::set<std::string> stages;
   for (const auto& stage : report["stages"]) stages.insert(stage["name"]);
   EXPECT_EQ(stages, (std::set<std::string>{"feature_extractor", "exhaustive_matcher", "mapper",
-                                           "partial_densifier 0"}));
+                                           "partial_densifier 0", "orthomosaic 0"}));
+  EXPECT_NE(result.out.find("map in " + (Workspace() / "map/0").string()), std::string::npos);
+}
+
+TEST_F(Reconstructor, MapZeroMakesNoneAndRemovesThoseOfEarlierRuns) {
+  CliResult result = Reconstruct("model", {"--map", "0"});
+  ASSERT_EQ(result.exit_code, 0) << result.Text();
+  EXPECT_FALSE(fs::exists(Workspace() / "map"));
+  EXPECT_EQ(result.out.find("map in "), std::string::npos);
+  result = Reconstruct("model", {"--Orthomosaic.pixel_size", "0.02"});
+  ASSERT_EQ(result.exit_code, 0) << result.Text();
+  EXPECT_EQ(Report()["options"]["Orthomosaic.pixel_size"], "0.02");
+  const auto written = fs::last_write_time(Workspace() / "map/0/orthomosaic.tif");
+  result = Reconstruct("model", {"--Orthomosaic.pixel_size", "0.02"});
+  EXPECT_NE(result.err.find("map/0 is there already"), std::string::npos) << result.Text();
+  EXPECT_EQ(fs::last_write_time(Workspace() / "map/0/orthomosaic.tif"), written);
+  // Another option: the map alone is made again.
+  result = Reconstruct("model", {"--Orthomosaic.pixel_size", "0.03"});
+  EXPECT_NE(result.err.find("dense/0 is there already"), std::string::npos) << result.Text();
+  EXPECT_NE(fs::last_write_time(Workspace() / "map/0/orthomosaic.tif"), written);
+  EXPECT_EQ(Reconstruct("model", {"--Orthomosaic.up", "1"}).exit_code, 2);
+  ASSERT_EQ(Reconstruct("model", {"--map", "0"}).exit_code, 0);
+  EXPECT_FALSE(fs::exists(Workspace() / "map"));
+}
+
+// The cloud is there, and no map can be made of it: that is said, and is no failure.
+TEST_F(Reconstructor, AModelWithoutAMapIsNamed) {
+  const CliResult result = Reconstruct("model", {"--Orthomosaic.pixel_size", "1e-9"});
+  EXPECT_EQ(result.exit_code, 3) << result.Text();
+  EXPECT_NE(result.out.find("left out: map of sparse/0: the map: would be of"), std::string::npos)
+      << result.Text();
+  EXPECT_TRUE(fs::exists(Workspace() / "dense/0/fused.ply"));
+  EXPECT_FALSE(fs::exists(Workspace() / "map/0"));
+  EXPECT_EQ(Reconstruct("model").exit_code, 0);
+  EXPECT_TRUE(fs::exists(Workspace() / "map/0/orthomosaic.tif"));
 }
 
 TEST_F(Reconstructor, NoColmapIsSaidBeforeAnyWork) {
@@ -158,10 +193,13 @@ TEST_F(Reconstructor, EveryModelBecomesACloud) {
   ASSERT_EQ(Reconstruct("two_models", {"--join_models", "0"}).exit_code, 0);
   EXPECT_TRUE(fs::exists(Workspace() / "dense/0/fused.ply"));
   EXPECT_TRUE(fs::exists(Workspace() / "dense/1/fused.ply"));
+  EXPECT_TRUE(fs::exists(Workspace() / "map/1/orthomosaic.tif"));
   // When a later run finds one model only, the second cloud does not stay behind.
   ASSERT_EQ(Reconstruct("model", {"--Mapper.min_model_size", "4"}).exit_code, 0);
   EXPECT_TRUE(fs::exists(Workspace() / "dense/0/fused.ply"));
   EXPECT_FALSE(fs::exists(Workspace() / "dense/1"));
+  EXPECT_TRUE(fs::exists(Workspace() / "map/0/orthomosaic.tif"));
+  EXPECT_FALSE(fs::exists(Workspace() / "map/1"));
 }
 
 TEST_F(Reconstructor, WhatTheFirstRoundLeavesOverGetsItsOwn) {

@@ -36,13 +36,15 @@ class Resume : public testing::Test {
     return RunProgram(SEAPOINT_PROGRAM, arguments, options);
   }
 
-  // Models and clouds, and what the report says of the pictures.
+  // Models, clouds and maps, and what the report says of the pictures.
   std::map<std::string, std::string> Result(const std::string& workspace) const {
     std::map<std::string, std::string> result;
-    for (const char* part : {"sparse", "dense"}) {
+    for (const char* part : {"sparse", "dense", "map"}) {
       for (const auto& [name, bytes] : ReadTree(folder_ / workspace / part)) {
         const std::string end = fs::path(name).extension().string();
-        if (end == ".bin" || end == ".ply" || end == ".vis") result[part + ("/" + name)] = bytes;
+        for (const char* kept : {".bin", ".ply", ".vis", ".tif", ".png", ".jpg"}) {
+          if (end == kept) result[part + ("/" + name)] = bytes;
+        }
       }
     }
     const auto report =

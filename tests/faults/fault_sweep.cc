@@ -90,6 +90,11 @@ const std::vector<SweptCommand>& Commands() {
          return with_few({"--image_path", in + "/images", "--input_path", in + "/model",
                           "--output_path", work + "/dense", "--PartialDensification.step", "4"});
        }},
+      {"orthomosaic",
+       [](const auto& in, const auto& work) -> Arguments {
+         return {"--image_path", in + "/images",          "--input_path",  in + "/model",
+                 "--cloud_path", in + "/dense/fused.ply", "--output_path", work + "/map"};
+       }},
       {"model_scaler",
        [](const auto& in, const auto& work) -> Arguments {
          return {"--input_path",     in + "/model",        "--output_path",

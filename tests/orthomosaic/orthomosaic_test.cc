@@ -10,6 +10,8 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/cloud/ply.h"
+#include "colmap_seapoint/orthomosaic/ground/no_map.h"
+#include "colmap_seapoint/orthomosaic/sources/picture_sample.h"
 #include "tests/orthomosaic/map_world.h"
 
 namespace colmap_seapoint {
@@ -343,6 +345,120 @@ TEST_F(OrthomosaicTest, PosesThatAreNoNumbersGiveNoColour) {
   world.model.images[5].cam_from_world.translation.z() = std::numeric_limits<double>::infinity();
   const OrthomosaicSummary summary = Make(world);
   EXPECT_EQ(summary.pictures_used, (std::vector<size_t>{1, 2, 3, 4}));
+}
+
+// Every other camera is farther away. What the water adds and takes depends on the range alone.
+struct TestWater {
+  Light attenuation = {0.5f, 0.2f, 0.1f}, veil = {0.05f, 0.12f, 0.2f};
+
+  ColorImage Through(const World& world, const Viewpoint& viewpoint) const {
+    ColorImage picture = TakePicture(world, viewpoint);
+    for (int y = 0; y < picture.height; ++y) {
+      for (int x = 0; x < picture.width; ++x) {
+        const auto place = SurfaceAt(world, viewpoint, {x + 0.5, y + 0.5});
+        const auto range = static_cast<float>((*place - viewpoint.Center()).norm());
+        for (int c = 0; c < 3; ++c) {
+          const auto k = static_cast<size_t>(c);
+          const float left = std::exp(-attenuation[k] * range);
+          uint8_t& value = picture.At(x, y, c);
+          value = ScreenOf(left * LightOf(value) + (1 - left) * veil[k]);
+        }
+      }
+    }
+    return picture;
+  }
+};
+
+MapWorld WorldUnderWater(const std::filesystem::path& folder, const TestWater& water) {
+  MapWorld world = MakeMapWorld(folder, NoGain);
+  for (size_t i = 0; i < world.pictures.size(); ++i) {
+    PosedImage& image = world.model.images[i];
+    if (i % 2 == 1) image.cam_from_world.translation.z() += 0.8;
+    const Viewpoint viewpoint = {world.model.cameras[1], image.cam_from_world};
+    world.pictures[i] = PictureOf(water.Through(world.world, viewpoint));
+  }
+  return world;
+}
+
+TEST_F(OrthomosaicTest, TheWaterIsTakenOut) {
+  const TestWater water;
+  const MapWorld world = WorldUnderWater(dir_.Path(), water);
+  // By what factor the map is brighter than the surface, as a logarithm: how far its values lie
+  // from their mean. The mean itself is the white balance's.
+  const auto spread = [&] {
+    double sum = 0;
+    for (int c = 0; c < 3; ++c) {
+      std::vector<double> logs;
+      for (int y = 0; y < map_.Grid().height; y += 3) {
+        for (int x = 0; x < map_.Grid().width; x += 3) {
+          if (!HasColor(x, y)) continue;
+          const auto truth = world.world.ColorAt(TruthAt(world, x + 0.5, y + 0.5));
+          const auto value = static_cast<float>(truth[static_cast<size_t>(c)]);
+          const auto shown = static_cast<float>(map_.Whole().rgba.At(x, y, c));
+          if (value < 60 || shown < 5 || shown > 250) continue;
+          logs.push_back(std::log(double{LightOf(shown)}) - std::log(double{LightOf(value)}));
+        }
+      }
+      EXPECT_GT(logs.size(), 500u);
+      double mean = 0;
+      for (const double log : logs) mean += log / static_cast<double>(logs.size());
+      for (const double log : logs) sum += std::abs(log - mean) / static_cast<double>(logs.size());
+    }
+    return sum / 3;
+  };
+  const OrthomosaicSummary raw = Make(world);
+  EXPECT_FALSE(raw.water.has_value());
+  const double raw_spread = spread();
+  OrthomosaicOptions options;
+  options.restore = true;
+  const OrthomosaicSummary restored = Make(world, options);
+  ASSERT_TRUE(restored.water.has_value());
+  ASSERT_TRUE(restored.water->IsDetermined()) << WaterText(*restored.water);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(restored.water->attenuation[c], double{water.attenuation[static_cast<size_t>(c)]},
+                0.08);
+  }
+  EXPECT_LT(spread(), 0.5 * raw_spread);
+}
+
+// Whoever asks for colours without the water where nothing tells of it gets them as they are.
+TEST_F(OrthomosaicTest, WaterThatIsNotKnownChangesNothing) {
+  MapWorld world = MakeMapWorld(dir_.Path(), NoGain);
+  for (size_t i = 1; i < world.pictures.size(); ++i) world.pictures[i] = Picture();
+  Make(world);
+  const MapTile raw = map_.Whole();
+  OrthomosaicOptions options;
+  options.restore = true;
+  const OrthomosaicSummary summary = Make(world, options);
+  EXPECT_FALSE(summary.water->IsDetermined());
+  EXPECT_EQ(map_.Whole().rgba.data, raw.rgba.data);
+}
+
+TEST_F(OrthomosaicTest, ProgressRunsFromNothingToAll) {
+  const MapWorld world = MakeMapWorld(dir_.Path(), NoGain);
+  OrthomosaicInputs inputs = world.Inputs(dir_.Path());
+  std::vector<double> shares = {0};
+  inputs.progress = [&](double share) {
+    EXPECT_GE(share, shares.back());
+    shares.push_back(share);
+  };
+  Make(inputs);
+  EXPECT_GT(shares.size(), 7u);
+  EXPECT_NEAR(shares.back(), 1, 1e-12);
+}
+
+TEST_F(OrthomosaicTest, NoSurfaceIsAMapLessAndNoFault) {
+  const MapWorld world = MakeMapWorld(dir_.Path(), NoGain);
+  CloudWriter sparse(dir_.Path() / "sparse.ply");
+  for (int i = 0; i < 6; ++i) {
+    CloudPoint point;
+    point.xyz = {0.4f * static_cast<float>(i % 3 - 1), 0.4f * static_cast<float>(i / 3), 2};
+    sparse.Add(point, nullptr, 0);
+  }
+  sparse.Finish();
+  OrthomosaicInputs inputs = world.Inputs(dir_.Path());
+  inputs.cloud_path = dir_.Path() / "sparse.ply";
+  EXPECT_THROW(Make(inputs), NoMap);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "colmap_seapoint/water/srgb.h"
-#include "tests/water/color_difference.h"
+#include "examples/benchmarks/map/color_difference.h"
 
 namespace colmap_seapoint {
 namespace {

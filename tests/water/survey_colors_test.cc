@@ -12,7 +12,7 @@
 #include "colmap_seapoint/water/srgb.h"
 #include "examples/survey/scene/seabed.h"
 #include "examples/survey/survey.h"
-#include "tests/water/color_difference.h"
+#include "examples/benchmarks/map/color_difference.h"
 
 namespace colmap_seapoint {
 namespace {

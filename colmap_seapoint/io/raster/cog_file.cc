@@ -6,7 +6,6 @@
 #include <string>
 
 #include "colmap_seapoint/base/error.h"
-#include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 
 namespace colmap_seapoint {
@@ -46,7 +45,7 @@ int PartLength(int side, int max_side) {
 
 // Into what its own name says.
 void WriteBlock(GDALDatasetH scratch, const RasterWindow& window, const std::filesystem::path& path,
-                RasterLayout layout, int num_threads) {
+                RasterLayout layout) {
   layout.width = window.width;
   layout.height = window.height;
   const AtomicPath part(path);
@@ -64,14 +63,14 @@ void WriteBlock(GDALDatasetH scratch, const RasterWindow& window, const std::fil
   }
   GdalDataset copy;
   {
-    const GdalSession session(path, num_threads);
+    const GdalSession session(path);
     GDALTranslateOptions* options = GDALTranslateOptionsNew(arguments.List(), nullptr);
     session.Check(options != nullptr);
     copy.reset(GDALTranslate(part.Temporary().c_str(), scratch, options, nullptr));
     GDALTranslateOptionsFree(options);
     session.Check(copy != nullptr, &part);
   }
-  WriteCog(copy.get(), part, path, layout, num_threads);
+  WriteCog(copy.get(), part, path, layout);
 }
 
 void WriteBlockIndex(const std::vector<std::filesystem::path>& blocks,
@@ -111,10 +110,10 @@ GdalStrings ScratchOptions(const RasterLayout& layout) {
 // The overviews go into the scratch file: made by the COG driver, they would lie in a file beside
 // it that a killed run would leave.
 void WriteCog(GDALDatasetH scratch, const AtomicPath& scratch_file,
-              const std::filesystem::path& path, const RasterLayout& layout, int num_threads) {
+              const std::filesystem::path& path, const RasterLayout& layout) {
   AtomicPath file(path);
   {
-    const GdalSession session(path, num_threads);
+    const GdalSession session(path);
     std::vector<int> factors = OverviewFactors(layout);
     if (!factors.empty()) {
       const CPLErr built =
@@ -122,13 +121,9 @@ void WriteCog(GDALDatasetH scratch, const AtomicPath& scratch_file,
                              factors.data(), 0, nullptr, nullptr, nullptr);
       session.Check(built == CE_None, &scratch_file);
     }
-    GdalStrings options = {"COMPRESS=DEFLATE",
-                           "PREDICTOR=YES",
-                           kCogLevel,
-                           "BLOCKSIZE=" + std::to_string(kCogTile),
-                           "BIGTIFF=IF_SAFER",
-                           "OVERVIEWS=FORCE_USE_EXISTING",
-                           "NUM_THREADS=" + std::to_string(EffectiveNumThreads(num_threads))};
+    GdalStrings options = {"COMPRESS=DEFLATE", "PREDICTOR=YES",
+                           kCogLevel,          "BLOCKSIZE=" + std::to_string(kCogTile),
+                           "BIGTIFF=IF_SAFER", "OVERVIEWS=FORCE_USE_EXISTING"};
     GdalDataset copy(GDALCreateCopy(GdalDriver("COG"), file.Temporary().c_str(), scratch, TRUE,
                                     options.List(), nullptr, nullptr));
     session.Check(copy != nullptr, &file);
@@ -168,12 +163,12 @@ std::filesystem::path BlockIndexPath(const std::filesystem::path& path) {
 }
 
 void WriteBlocks(GDALDatasetH scratch, const std::filesystem::path& path,
-                 const RasterLayout& layout, int max_side, int num_threads) {
+                 const RasterLayout& layout, int max_side) {
   CheckWritableDir(BlockFolder(path));
   const std::vector<RasterWindow> blocks = Blocks(layout, max_side);
   const std::vector<std::filesystem::path> paths = BlockPaths(path, layout, max_side);
   for (size_t i = 0; i < blocks.size(); ++i) {
-    WriteBlock(scratch, blocks[i], paths[i], layout, num_threads);
+    WriteBlock(scratch, blocks[i], paths[i], layout);
   }
   WriteBlockIndex(paths, BlockIndexPath(path));
 }

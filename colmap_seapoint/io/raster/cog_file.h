@@ -16,7 +16,7 @@ GdalStrings ScratchOptions(const RasterLayout& layout);
 // Gives `scratch`, a GeoTIFF of the layout in `scratch_file` that can be written, its overviews,
 // and copies it to `path` as a Cloud-Optimised GeoTIFF. Atomic. Throws Error.
 void WriteCog(GDALDatasetH scratch, const AtomicPath& scratch_file,
-              const std::filesystem::path& path, const RasterLayout& layout, int num_threads);
+              const std::filesystem::path& path, const RasterLayout& layout);
 
 // The raster cut into equal blocks of no longer side than max_side, in rows.
 std::vector<RasterWindow> Blocks(const RasterLayout& layout, int max_side);
@@ -27,6 +27,6 @@ std::filesystem::path BlockIndexPath(const std::filesystem::path& path);
 
 // Writes `scratch` as these blocks, each a Cloud-Optimised GeoTIFF, and the file that joins them.
 void WriteBlocks(GDALDatasetH scratch, const std::filesystem::path& path,
-                 const RasterLayout& layout, int max_side, int num_threads);
+                 const RasterLayout& layout, int max_side);
 
 }  // namespace colmap_seapoint

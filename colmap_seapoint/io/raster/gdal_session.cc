@@ -8,7 +8,6 @@
 #include <mutex>
 
 #include "colmap_seapoint/base/error.h"
-#include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/system/system_error.h"
 
 namespace colmap_seapoint {
@@ -18,8 +17,7 @@ namespace {
 constexpr GIntBig kCacheBytes = GIntBig{128} << 20;
 constexpr const char* kDrivers[] = {"GTiff", "COG", "VRT"};
 
-// Only what this room needs: all of GDAL's drivers take 50 ms to start. GDAL's own threads have
-// nothing to say either: what fails in them fails the call.
+// Only what this room needs: all of GDAL's drivers take 50 ms to start.
 void SetUp() {
   GDALRegister_GTiff();
   GDALRegister_COG();
@@ -35,7 +33,7 @@ std::string OneLine(std::string text) {
 
 }  // namespace
 
-GdalSession::GdalSession(const std::filesystem::path& path, int num_threads) : path_(path) {
+GdalSession::GdalSession(const std::filesystem::path& path) : path_(path) {
   static std::once_flag once;
   std::call_once(once, SetUp);
   for (const char* name : kDrivers) {
@@ -47,8 +45,7 @@ GdalSession::GdalSession(const std::filesystem::path& path, int num_threads) : p
   // No .aux.xml beside the files; overviews of large tiles.
   CPLSetThreadLocalConfigOption("GDAL_PAM_ENABLED", "NO");
   CPLSetThreadLocalConfigOption("GDAL_TIFF_OVR_BLOCKSIZE", "512");
-  CPLSetThreadLocalConfigOption("GDAL_NUM_THREADS",
-                                std::to_string(EffectiveNumThreads(num_threads)).c_str());
+  CPLSetThreadLocalConfigOption("GDAL_NUM_THREADS", "1");
 }
 
 GdalSession::~GdalSession() { CPLPopErrorHandler(); }

@@ -21,9 +21,9 @@ using GdalDataset = std::unique_ptr<void, GdalCloser>;
 // While it lives, the thread that made it uses GDAL on `path`, and no other session.
 class GdalSession {
  public:
-  // `num_threads` that GDAL may use, -1: all. Throws Error when GDAL lacks a driver that this room
-  // needs.
-  explicit GdalSession(const std::filesystem::path& path, int num_threads = 1);
+  // GDAL uses no other thread: it waits for ever for one that the system does not give. Throws
+  // Error when GDAL lacks a driver that this room needs.
+  explicit GdalSession(const std::filesystem::path& path);
   ~GdalSession();
   GdalSession(const GdalSession&) = delete;
   GdalSession& operator=(const GdalSession&) = delete;

@@ -95,9 +95,9 @@ struct RasterWriter::Impl {
     const std::lock_guard<std::mutex> held(mutex);
     SEAPOINT_CHECK(dataset != nullptr);
     if (NeedsBlocks(layout, options)) {
-      WriteBlocks(dataset.get(), path, layout, options.max_block_side, options.num_threads);
+      WriteBlocks(dataset.get(), path, layout, options.max_block_side);
     }
-    WriteCog(dataset.get(), scratch, path, layout, options.num_threads);
+    WriteCog(dataset.get(), scratch, path, layout);
     if (layout.crs.empty()) WriteWorldFile(path, layout);
     Close();
   }

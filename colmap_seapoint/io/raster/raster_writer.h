@@ -17,7 +17,6 @@ inline constexpr int kMaxBlockSide = 32767;
 
 struct RasterWriterOptions {
   int max_block_side = kMaxBlockSide;  // larger rasters are written in blocks as well, pixels
-  int num_threads = -1;                // of Finish(); -1: all
 };
 
 // Takes the tiles in any order into a temporary file, and makes of them, in Finish():
@@ -27,10 +26,10 @@ struct RasterWriterOptions {
 //   map.tfw      a world file, where there is no reference system
 //   map_blocks/  the same in blocks of at most max_block_side, and map.vrt, which joins them, where
 //                the raster has a longer side
-// The same bytes for any order of tiles and any number of threads; each file appears whole or not
-// at all. Replaces what has the names of RasterFiles(), which the caller must have claimed
-// (io/outputs/output_folder.h). Throws Error (file, finding, remedy): a reference system that PROJ
-// does not know (at once), a full disk, a GDAL without the drivers.
+// The same bytes for any order of tiles; each file appears whole or not at all. Several rasters may
+// be finished at once, each on one thread. Replaces what has the names of RasterFiles(), which the
+// caller must have claimed (io/outputs/output_folder.h). Throws Error (file, finding, remedy): a
+// reference system that PROJ does not know (at once), a full disk, a GDAL without the drivers.
 //
 // Cost: the raster's bytes on the disk twice, compressed; memory 128 MB of GDAL's cache, shared by
 // all writers.

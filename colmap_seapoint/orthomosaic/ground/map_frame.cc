@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "colmap_seapoint/base/error.h"
@@ -23,7 +24,7 @@ constexpr size_t kMedianPoints = 1000;
 constexpr double kOutlierFactor = 3.5;  // times the median distance
 
 struct Plane {
-  Eigen::Vector3d center, right, normal;
+  Eigen::Vector3d center, normal;
   double thinness = 1;
 };
 
@@ -35,8 +36,7 @@ Plane PlaneThrough(const Points& points) {
   for (const Eigen::Vector3d& xyz : points) scatter += (xyz - mean) * (xyz - mean).transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter);
   const Eigen::Vector3d values = solver.eigenvalues().cwiseMax(0);
-  return {mean, solver.eigenvectors().col(2), solver.eigenvectors().col(0),
-          values[1] > 0 ? std::sqrt(values[0] / values[1]) : 1};
+  return {mean, solver.eigenvectors().col(0), values[1] > 0 ? std::sqrt(values[0] / values[1]) : 1};
 }
 
 std::vector<double> DistancesTo(const Plane& plane, const Points& points) {
@@ -116,6 +116,38 @@ Eigen::Vector3d UprightInPlane(const SparseModel& model, const Eigen::Vector3d& 
   return sum / std::max<double>(1, static_cast<double>(model.images.size()));
 }
 
+// All but a hundredth of the sample at either end.
+double ExtentAlong(const Points& sample, const Eigen::Vector3d& direction) {
+  std::vector<double> places;
+  places.reserve(sample.size());
+  for (const Eigen::Vector3d& xyz : sample) places.push_back(direction.dot(xyz));
+  const auto skip = static_cast<std::ptrdiff_t>(places.size() / 100);
+  std::nth_element(places.begin(), places.begin() + skip, places.end());
+  const double low = places[static_cast<size_t>(skip)];
+  std::nth_element(places.begin(), places.end() - 1 - skip, places.end());
+  return places[places.size() - 1 - static_cast<size_t>(skip)] - low;
+}
+
+// The longer side of the smallest rectangle in the plane that holds the sample.
+Eigen::Vector3d LongestSide(const Points& sample, const Eigen::Vector3d& normal) {
+  Points few;
+  for (size_t i = 0; i < sample.size(); i += sample.size() / kMedianPoints + 1) {
+    few.push_back(sample[i]);
+  }
+  const Eigen::Vector3d first = normal.unitOrthogonal();
+  Eigen::Vector3d longest = first;
+  double least = std::numeric_limits<double>::infinity();
+  for (int degree = 0; degree < 90; ++degree) {
+    const Eigen::Vector3d side = Eigen::AngleAxisd(degree * EIGEN_PI / 180, normal) * first;
+    const Eigen::Vector3d other = normal.cross(side);
+    const double a = ExtentAlong(few, side), b = ExtentAlong(few, other);
+    if (a * b >= least) continue;
+    least = a * b;
+    longest = a >= b ? side : other;
+  }
+  return longest;
+}
+
 // Rotation with rows right, up, normal.
 Eigen::Matrix3d AxesOf(const Eigen::Vector3d& normal, const Eigen::Vector3d& up) {
   const Eigen::Vector3d in_plane = up - up.dot(normal) * normal;
@@ -152,7 +184,7 @@ struct MapUp {
   std::string text;
 };
 
-MapUp FindUp(const MapFrameOptions& options, const SparseModel& model, const Plane& plane,
+MapUp FindUp(const MapFrameOptions& options, const SparseModel& model, const Points& sample,
              const Eigen::Vector3d& normal, PlaneKind kind, bool knows_north) {
   if (options.up) return {UnitDirection(*options.up), "up as given"};
   if (kind == PlaneKind::kWall) return {Eigen::Vector3d::UnitZ(), "up is up"};
@@ -162,9 +194,8 @@ MapUp FindUp(const MapFrameOptions& options, const SparseModel& model, const Pla
   const Eigen::Vector3d upright = UprightInPlane(model, normal);
   if (upright.norm() > kAgreeing)
     return {upright, "turned as the pictures are, north is not known"};
-  const Eigen::Vector3d up = normal.cross(plane.right);
-  if (up.norm() > 1e-3) return {up, "its longest side to the right, north is not known"};
-  return {normal.unitOrthogonal(), "turned anyhow, north is not known"};
+  return {normal.cross(LongestSide(sample, normal)),
+          "its longer side to the right, north is not known"};
 }
 
 std::string PlaneText(PlaneKind kind) {
@@ -192,7 +223,7 @@ MapFrame FindMapFrame(const MapFrameOptions& options, const SparseModel& model,
   Eigen::Vector3d normal = TowardsCameras(model, plane);
   if (frame.kind == PlaneKind::kGiven) normal = UnitDirection(*options.towards_eye);
   if (frame.kind == PlaneKind::kLevel) normal = Eigen::Vector3d::UnitZ();
-  const MapUp up = FindUp(options, model, plane, normal, frame.kind, KnowsNorth(units));
+  const MapUp up = FindUp(options, model, sample, normal, frame.kind, KnowsNorth(units));
   frame.is_north_up = frame.kind == PlaneKind::kLevel && KnowsNorth(units) && !options.up;
   frame.text = PlaneText(frame.kind) + "; " + up.text;
   if (frame.kind == PlaneKind::kLevel && !options.up) return frame;  // exactly the model's own

@@ -37,7 +37,7 @@ struct MapFrame {
 
 // `sample`: points of the cloud, one at least. The best plane goes through most of them, whatever
 // the rest does, and is seen from the cameras' side. Where the model tells no north, the pictures'
-// own upright is up on the map if they agree on one, else the longest extent lies to the right; of
+// own upright is up on the map if they agree on one, else the longer side lies to the right; of
 // a wall in a level model, up is up. Throws Error for directions that are zero, or parallel.
 MapFrame FindMapFrame(const MapFrameOptions& options, const SparseModel& model,
                       const std::vector<Eigen::Vector3d>& sample,

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/orthomosaic/ground/no_map.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -45,7 +46,7 @@ Interval ExtentAlong(const std::vector<Eigen::Vector3d>& sample, int axis) {
   remedy.precision(3);
   remedy << "give a pixel size of " << 1.01 * factor * pixel_size << " or more (now " << pixel_size
          << "), or cut the cloud to what is to be mapped";
-  throw Error("the map", finding.str(), remedy.str());
+  throw NoMap("the map", finding.str(), remedy.str());
 }
 
 // The place of step `index` on Hilbert's curve through a square of `side` (a power of two) cells.

@@ -34,7 +34,7 @@ inline constexpr int kMaxMapSide = 100000;  // pixels
 // The grid over a sample of the cloud, at least one point, in the map's frame: all but a thousandth
 // of it at either end of each axis, and a fiftieth of that extent more. Points far outside of the
 // rest do not make the map large. Edges are whole multiples of the pixel size, so that maps of one
-// frame and pixel size fit onto each other. Throws Error for more than kMaxMapSide pixels.
+// frame and pixel size fit onto each other. Throws NoMap for more than kMaxMapSide pixels.
 MapGrid MakeMapGrid(const std::vector<Eigen::Vector3d>& sample, double pixel_size);
 
 // All tiles along a curve that keeps neighbours together (Hilbert's), so that the pictures that one

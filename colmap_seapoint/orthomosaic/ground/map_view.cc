@@ -75,7 +75,7 @@ std::optional<double> SurveyGsd(const std::vector<MapView>& views,
     }
     if (std::isfinite(least)) best.push_back(least);
   }
-  if (best.empty()) return std::nullopt;
+  if (best.empty() || 2 * best.size() < points.size()) return std::nullopt;
   return UpperMedian(std::move(best));
 }
 

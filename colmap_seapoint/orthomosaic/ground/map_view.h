@@ -19,20 +19,27 @@ class MapView {
   // The pixel of a place of the map; nullopt behind the camera, outside of the picture, and so far
   // outside of the field of view that the distortion folds it back into the picture.
   std::optional<Eigen::Vector2d> PixelOf(const Eigen::Vector3d& place) const {
-    const Eigen::Vector3d in_cam = rotation_ * place + translation_;
+    return PixelOfInCam(InCam(place));
+  }
+  // The same in two steps.
+  Eigen::Vector3d InCam(const Eigen::Vector3d& place) const {
+    return rotation_ * place + translation_;
+  }
+  std::optional<Eigen::Vector2d> PixelOfInCam(const Eigen::Vector3d& in_cam) const {
     if (!(in_cam.z() > 0)) return std::nullopt;
     if (in_cam.head<2>().squaredNorm() > max_tan2_ * in_cam.z() * in_cam.z()) return std::nullopt;
     const std::optional<Eigen::Vector2d> pixel = camera_.ImgFromCam(in_cam);
     if (!pixel || !camera_.InImage(*pixel)) return std::nullopt;
     return pixel;
   }
-  // The size on the ground of a pixel there: the distance along the axis over the focal length.
-  double GsdAt(const Eigen::Vector3d& place) const {
-    return (rotation_.row(2).dot(place) + translation_.z()) / camera_.MeanFocal();
+  double DepthOf(const Eigen::Vector3d& place) const {  // the distance along the axis
+    return rotation_.row(2).dot(place) + translation_.z();
   }
+  // The size on the ground of a pixel there: the depth over the focal length.
+  double GsdAt(const Eigen::Vector3d& place) const { return DepthOf(place) / camera_.MeanFocal(); }
   const Eigen::Vector3d& Center() const { return center_; }
   const Camera& GetCamera() const { return camera_; }
-  Eigen::Vector3d Direction() const { return rotation_.row(2).transpose(); }  // that it looks in
+  const Eigen::Matrix3d& Rotation() const { return rotation_; }  // cam_from_map
 
   // low x, low y, high x, high y of what it may see of places between two heights; nullopt when
   // that is nothing. Rays are followed as far as `max_reach` from the camera.
@@ -50,7 +57,8 @@ class MapView {
 std::vector<MapView> MakeMapViews(const SparseModel& model, const Rigid3d& map_from_cloud);
 
 // The survey's ground sampling distance: the median over the points of what the picture that sees
-// it best has; nullopt when no picture sees any of them. (What hides a point is not looked for.)
+// it best has; nullopt when no picture sees more than half of them. (What hides a point is not
+// looked for.)
 std::optional<double> SurveyGsd(const std::vector<MapView>& views,
                                 const std::vector<Eigen::Vector3d>& points);
 

@@ -8,23 +8,12 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
-// The way from a place towards the camera: so many pixels, rising so much with every pixel.
-struct Rise {
-  double dx = 0, dy = 0;  // of unit length together
-  double length = 0;
-  double slope = 0;  // map's unit a pixel
-};
 
-Rise RiseTo(const MapPlace& place, const MapPlace& camera) {
-  const Eigen::Vector3d way = camera - place;
-  const double length = std::hypot(way.x(), way.y());
-  return {way.x() / length, way.y() / length, length, way.z() / length};
-}
-
-// From `begin` pixels of the way on, a block at a time, or a region where all around is lower.
+// From `begin` pixels of the way on, a block at a time, or a region where all around is
+// lower.
 bool IsHiddenByBlocks(const BlockRelief& blocks, const MapPlace& place, const Rise& rise,
                       double begin, double tolerance) {
-  for (double s = begin; s < rise.length;) {
+  for (double s = begin; s < rise.reach;) {
     const double height = place.z() + s * rise.slope;
     if (rise.slope >= 0 && height >= double{blocks.highest}) return false;
     const int x = static_cast<int>(std::floor((place.x() + s * rise.dx) / kBlockSize));
@@ -43,7 +32,7 @@ bool IsBlockHidden(const BlockRelief& blocks, int x, int y, const MapPlace& came
                    double pixel_size) {
   const MapPlace place((x + 0.5) * kBlockSize, (y + 0.5) * kBlockSize,
                        double{blocks.mean[blocks.At(x, y)]});
-  return IsHiddenByBlocks(blocks, place, RiseTo(place, camera), kBlockSize,
+  return IsHiddenByBlocks(blocks, place, LineOfSight::RiseTo(place, camera), kBlockSize,
                           kBlockSize * pixel_size);
 }
 
@@ -73,13 +62,18 @@ LineOfSight::LineOfSight(const ReliefTile& tile, const MapGrid::Box& box, const 
   }
 }
 
-bool LineOfSight::IsHidden(const MapPlace& place, const MapPlace& camera) const {
-  const Rise rise = RiseTo(place, camera);
+Rise LineOfSight::RiseTo(const MapPlace& place, const MapPlace& camera) {
+  const Eigen::Vector3d way = camera - place;
+  const double length = std::hypot(way.x(), way.y());
+  return {way.x() / length, way.y() / length, length, way.z() / length, length};
+}
+
+bool LineOfSight::IsHiddenAlong(const MapPlace& place, const Rise& rise) const {
   if (!(rise.length > 1)) return false;
   const double first_x = place.x() - box_.x + kReliefMargin;
   const double first_y = place.y() - box_.y + kReliefMargin;
   double s = 1;
-  while (s < rise.length) {
+  while (s < rise.reach) {
     const double height = place.z() + s * rise.slope + tolerance_;
     if (rise.slope >= 0 && height >= double{blocks_.highest}) return false;
     const int x = static_cast<int>(std::floor(first_x + s * rise.dx));
@@ -91,6 +85,40 @@ bool LineOfSight::IsHidden(const MapPlace& place, const MapPlace& camera) const 
     s += is_above && rise.slope >= 0 ? kBlockSize : 1;
   }
   return IsHiddenByBlocks(blocks_, place, rise, std::max(s, 1.0), tolerance_);
+}
+
+// Of a place of the map: the highest surface in the block and the eight around it, in the tile of
+// all pixels, beyond it of the blocks' means.
+double LineOfSight::TopAround(double x, double y) const {
+  const int column = static_cast<int>(std::floor(x)) - box_.x + kReliefMargin;
+  const int row = static_cast<int>(std::floor(y)) - box_.y + kReliefMargin;
+  float top = kNothing;
+  if (heights_.Contains(column, row)) {
+    top = block_tops_.At(column / kBlockSize, row / kBlockSize);
+  }
+  const int bx = static_cast<int>(std::floor(x / kBlockSize));
+  const int by = static_cast<int>(std::floor(y / kBlockSize));
+  for (int i = 0; i < 9; ++i) {
+    const int u = bx + i % 3 - 1, v = by + i / 3 - 1;
+    if (blocks_.Contains(u, v)) top = std::fmax(top, blocks_.mean[blocks_.At(u, v)]);
+  }
+  return double{top};
+}
+
+double LineOfSight::ReachOf(const MapPlace& place, const Rise& rise) const {
+  if (!(rise.slope >= 0)) return rise.length;
+  constexpr double kStep = 0.5 * kBlockSize;
+  double reach = 0;
+  for (double s = 0; s < rise.length; s += kStep) {
+    const double height = place.z() + s * rise.slope + tolerance_;
+    if (height >= double{blocks_.highest}) break;
+    const double x = place.x() + s * rise.dx, y = place.y() + s * rise.dy;
+    const int bx = static_cast<int>(std::floor(x / kBlockSize));
+    const int by = static_cast<int>(std::floor(y / kBlockSize));
+    if (!blocks_.Contains(bx, by)) break;
+    if (TopAround(x, y) > height) reach = s + kBlockSize;
+  }
+  return reach;
 }
 
 }  // namespace colmap_seapoint

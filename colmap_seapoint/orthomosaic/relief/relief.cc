@@ -5,9 +5,9 @@
 #include <cstring>
 #include <limits>
 
-#include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/orthomosaic/ground/map_tile.h"
+#include "colmap_seapoint/orthomosaic/ground/no_map.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -59,7 +59,7 @@ Relief::Relief(const CloudTiles& cloud, const MapGrid& grid, bool fill, int num_
   store_.Finish();
   blocks_.FindTops();
   if (!(blocks_.lowest <= blocks_.highest)) {
-    throw Error("the map", "the points of the cloud lie too far apart to make a surface",
+    throw NoMap("the map", "the points of the cloud lie too far apart to make a surface",
                 "give a dense cloud, or a larger pixel size");
   }
 }

@@ -43,7 +43,7 @@ struct BlockRelief {
 class Relief {
  public:
   // Makes all tiles, on `num_threads`; they lie in a temporary file in `folder`. Throws Error when
-  // that cannot be written, or no cell of the map has a surface.
+  // that cannot be written, NoMap when no cell of the map has a surface.
   Relief(const CloudTiles& cloud, const MapGrid& grid, bool fill, int num_threads,
          const std::filesystem::path& folder);
 

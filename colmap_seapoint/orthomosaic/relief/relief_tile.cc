@@ -75,22 +75,22 @@ class CellGrid {
 void CellGrid::AddPoints(const std::vector<TilePoint>& points) {
   const size_t num_cells = static_cast<size_t>(nx_) * static_cast<size_t>(ny_);
   const float per_pixel = 1 / static_cast<float>(size_), per_unit = 1 / unit_;
-  const auto cell_of = [&](const TilePoint& point) {
-    const int x = static_cast<int>((point.column + kTileHalo) * per_pixel);
-    const int y = static_cast<int>((point.row + kTileHalo) * per_pixel);
-    return At(std::clamp(x, 0, nx_ - 1), std::clamp(y, 0, ny_ - 1));
+  const auto column_of = [&](const TilePoint& point) {
+    return std::clamp(static_cast<int>((point.column + kTileHalo) * per_pixel), 0, nx_ - 1);
+  };
+  const auto row_of = [&](const TilePoint& point) {
+    return std::clamp(static_cast<int>((point.row + kTileHalo) * per_pixel), 0, ny_ - 1);
   };
   std::vector<uint32_t> ends(num_cells + 1, 0);
-  for (const TilePoint& point : points) ++ends[cell_of(point) + 1];
+  for (const TilePoint& point : points) ++ends[At(column_of(point), row_of(point)) + 1];
   for (size_t i = 1; i <= num_cells; ++i) ends[i] += ends[i - 1];
   std::vector<TilePoint> sorted(points.size());
   for (const TilePoint& point : points) {
-    const size_t cell = cell_of(point);
-    const size_t column = cell % static_cast<size_t>(nx_), row = cell / static_cast<size_t>(nx_);
+    const int column = column_of(point), row = row_of(point);
     const float x = static_cast<float>(column) + 0.5f, y = static_cast<float>(row) + 0.5f;
-    sorted[ends[cell]++] = {(point.column + kTileHalo) * per_pixel - x,
-                            (point.row + kTileHalo) * per_pixel - y, point.height * per_unit,
-                            point.weight};
+    sorted[ends[At(column, row)]++] = {(point.column + kTileHalo) * per_pixel - x,
+                                       (point.row + kTileHalo) * per_pixel - y,
+                                       point.height * per_unit, point.weight};
   }
   first_layer_.assign(1, 0);
   first_layer_.reserve(num_cells + 1);
@@ -166,6 +166,9 @@ void CellGrid::Bridge() {
   for (int y = 2; y + 2 < ny_; ++y) {
     for (int x = 2; x + 2 < nx_; ++x) {
       if (flags_[At(x, y)] != 0) continue;
+      uint8_t around = 0;
+      for (const auto& [dx, dy] : kAround) around |= flags_[At(x + dx, y + dy)];
+      if ((around & kMeasured) == 0) continue;
       for (size_t k = 0; k < kAround.size(); ++k) {
         BridgeBetween(x, y, k, 1);
         BridgeBetween(x, y, k, 2);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <mutex>
 
 #include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/orthomosaic/sources/picture_sample.h"
@@ -110,17 +111,24 @@ bool IsUsable(const Camera& camera, const Picture& picture, int reduction) {
 }  // namespace
 
 std::vector<size_t> LookAtSources(const Relief& relief, const std::vector<MapView>& views,
-                                  int num_threads, MapPictures* pictures, SourceBlocks* sources) {
+                                  int num_threads, const std::function<void(int64_t)>& progress,
+                                  MapPictures* pictures, SourceBlocks* sources) {
   std::vector<uint8_t> is_unusable(views.size(), 0);
   const std::vector<std::array<int, 4>> blocks = FootprintBlocks(relief, views);
-  ParallelFor(num_threads, static_cast<int64_t>(views.size()), [&](int64_t index) {
-    const auto i = static_cast<size_t>(index);
+  std::mutex mutex;
+  int64_t num_done = 0;
+  const auto look = [&](size_t i) {
     if (blocks[i][0] > blocks[i][2] || blocks[i][1] > blocks[i][3]) return;
     const auto picture_idx = static_cast<uint32_t>(i);
     const std::shared_ptr<const Picture> picture = pictures->Get(picture_idx);
     is_unusable[i] = !IsUsable(views[i].GetCamera(), *picture, pictures->Reduction(picture_idx));
     if (is_unusable[i]) return;
     LookAtPicture(relief, views[i], picture_idx, blocks[i], *picture, sources);
+  };
+  ParallelFor(num_threads, static_cast<int64_t>(views.size()), [&](int64_t i) {
+    look(static_cast<size_t>(i));
+    const std::lock_guard<std::mutex> lock(mutex);
+    progress(++num_done);
   });
   ParallelFor(num_threads, static_cast<int64_t>(sources->NumSlots()),
               [&](int64_t slot) { SortSources(sources->Of(static_cast<int32_t>(slot))); });

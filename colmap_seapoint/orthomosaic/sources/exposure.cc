@@ -72,16 +72,13 @@ class RowCollector {
     for (int y = 0; y < relief_.Blocks().height; ++y) {
       for (int x = 0; x < relief_.Blocks().width; ++x) {
         const int32_t at = sources_.slot[relief_.Blocks().At(x, y)];
-        if (at >= 0 && Scattered(static_cast<size_t>(at)) % stride == 0) AddBlock(x, y, at, &rows);
+        if (at >= 0 && SourceBlocks::Scattered(at) % stride == 0) AddBlock(x, y, at, &rows);
       }
     }
     return rows;
   }
 
  private:
-  // So that a stride does not follow the rows of the map.
-  static size_t Scattered(size_t slot) { return (slot * 0x9e3779b97f4a7c15ull) >> 32; }
-
   // The best source with the next, that with the one after it, and the best with the last, which
   // is near the border of its picture.
   void AddBlock(int x, int y, int32_t at, std::vector<Row>* rows) const {

@@ -13,11 +13,17 @@ namespace colmap_seapoint {
 
 using Light = std::array<float, 3>;  // red, green, blue, linear, 1 = white
 
-// sRGB's curve, by tables: from 0 ... 255 with fractions, and to the nearest of 0 ... 255.
-float LightOf(float value);
-uint8_t ScreenOf(float light);
-
 namespace sampling {
+
+inline constexpr int kScreenSteps = 4096;
+
+// sRGB's curve and its inverse, with one entry more than is needed.
+struct LightTables {
+  std::array<float, 257> light;
+  std::array<float, kScreenSteps + 2> screen;
+  LightTables();
+};
+extern const LightTables kLightTables;
 
 // Between the four nearest pixels' centres; beyond the outermost ones, those.
 inline float Bilinear(const GrayImage& image, float x, float y) {
@@ -36,6 +42,21 @@ inline float Bilinear(const GrayImage& image, float x, float y) {
 }
 
 }  // namespace sampling
+
+// sRGB's curve, by tables: from 0 ... 255 with fractions, and to the nearest of 0 ... 255.
+inline float LightOf(float value) {
+  const std::array<float, 257>& table = sampling::kLightTables.light;
+  const auto at = static_cast<size_t>(value);
+  return table[at] + (value - static_cast<float>(at)) * (table[at + 1] - table[at]);
+}
+
+inline uint8_t ScreenOf(float light) {
+  const auto& table = sampling::kLightTables.screen;
+  const float place = std::clamp(light, 0.0f, 1.0f) * sampling::kScreenSteps;
+  const auto at = static_cast<size_t>(place);
+  const float value = table[at] + (place - static_cast<float>(at)) * (table[at + 1] - table[at]);
+  return static_cast<uint8_t>(value + 0.5f);
+}
 
 inline bool IsMasked(const Picture& picture, float x, float y) {
   if (picture.mask.Empty()) return false;

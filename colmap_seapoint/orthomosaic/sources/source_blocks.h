@@ -37,6 +37,10 @@ struct SourceBlocks {
     });
     return found == Of(at) + kMaxSources ? nullptr : found;
   }
+  // For taking some of the slots, from all over the map and along no row of it.
+  static size_t Scattered(int32_t at) {
+    return (static_cast<size_t>(at) * 0x9e3779b97f4a7c15ull) >> 32;
+  }
   size_t NumSlots() const { return sources.size() / kMaxSources; }
   // The block's chosen picture; kNoPicture where there is none.
   uint32_t PictureOf(size_t block) const {

@@ -95,6 +95,7 @@ int Survey(const std::vector<std::string>& arguments) {
   add("seed", Default(&survey.seed), "of the survey");
   add("relief", Default(&survey.relief), "of the survey");
   add("pixel_size", Default(&options.pixel_size), "metres; 0: the survey's GSD");
+  add("restore", Default(&options.restore), "colours without the water");
   add("num_threads", Default(&options.num_threads), "-1: all");
   if (!ParseOptions(description, arguments)) return 0;
   const SurveyTruth truth = ReadSurveyTruth(survey_path);
@@ -119,6 +120,8 @@ int Survey(const std::vector<std::string>& arguments) {
   std::printf("covered surface coloured %.5f; coloured though unseen %.5f\n",
               coverage.colored_share, coverage.unseen_share);
   std::printf("%d marks: median %.3f pixels, p95 %.3f\n", marks.num_marks, marks.median, marks.p95);
+  std::printf("colours: mean CIEDE2000 %.2f%s\n", MeasureColors(truth, survey, map),
+              summary.water ? ("; " + WaterText(*summary.water)).c_str() : "");
   std::printf("%d pairs across seams: step %.3f levels, inside one picture %.3f: %.2f times\n",
               seams.num_pairs, seams.across, seams.inside, seams.across / seams.inside);
   return 0;

@@ -9,6 +9,7 @@
 #include "colmap_seapoint/base/median.h"
 #include "colmap_seapoint/orthomosaic/ground/map_view.h"
 #include "colmap_seapoint/orthomosaic/sources/picture_sample.h"
+#include "examples/benchmarks/map/color_difference.h"
 #include "examples/survey/scene/seabed.h"
 #include "examples/survey/visibility.h"
 
@@ -18,6 +19,7 @@ namespace {
 constexpr int kPatch = 16;  // half the side of a mark, pixels
 constexpr int kSearch = 4;  // pixels
 constexpr int kNumMarks = 200;
+constexpr int kColorPatch = 8;  // pixels a side
 
 double QuantileOr0(const std::vector<double>& values, double share) {
   return values.empty() ? 0 : Quantile(values, share);
@@ -59,6 +61,47 @@ double Correlation(const FloatImage& truth, const Image<uint8_t>& rgba, int x, i
 double Peak(double below, double at, double above) {
   const double bend = below - 2 * at + above;
   return bend < 0 ? 0.5 * (below - above) / bend : 0;
+}
+
+SeabedOptions OptionsOfSeabed(const SurveyTruth& truth, const SurveyOptions& options) {
+  SeabedOptions seabed;
+  seabed.seed = static_cast<uint64_t>(options.seed);
+  seabed.relief = options.relief;
+  seabed.cell = truth.surface.CellSize();
+  return seabed;
+}
+
+AlbedoMap ColoursOf(const Seabed& seabed, const SurveyTruth& truth) {
+  const GridSpec& ground = truth.surface.Ground().Grid();
+  return AlbedoMap(seabed, ground.MinX(), ground.MinY(), ground.MaxX(), ground.MaxY(),
+                   size_t{200} << 20);
+}
+
+Eigen::Array3d LightOfPixel(const Image<uint8_t>& rgba, int x, int y) {
+  return {double{LightOf(rgba.At(x, y, 0))}, double{LightOf(rgba.At(x, y, 1))},
+          double{LightOf(rgba.At(x, y, 2))}};
+}
+
+// Of the mean of a patch of the map and of the truth; nullopt where it is not all coloured ground.
+std::optional<double> ColorError(const SurveyTruth& truth, const MemoryMap& map, int x, int y,
+                                 AlbedoMap* colours) {
+  Eigen::Array3d shown = Eigen::Array3d::Zero(), there = shown;
+  for (int v = y; v < y + kColorPatch; ++v) {
+    for (int u = x; u < x + kColorPatch; ++u) {
+      const auto hit = TrueSurface(truth, map, u + 0.5, v + 0.5);
+      if (map.Whole().rgba.At(u, v, 3) == 0 || !hit || hit->part != SurfacePart::kGround) {
+        return std::nullopt;
+      }
+      constexpr double kTexels = 0.01;  // metres that are prepared around
+      colours->Prepare(hit->texture.x() - kTexels, hit->texture.y() - kTexels,
+                       hit->texture.x() + kTexels, hit->texture.y() + kTexels, 1);
+      const Albedo albedo = colours->At(hit->texture.x(), hit->texture.y());
+      there += Eigen::Array3d(albedo.red, albedo.green, albedo.blue);
+      shown += LightOfPixel(map.Whole().rgba, u, v);
+    }
+  }
+  constexpr double kNumPixels = kColorPatch * kColorPatch;
+  return DeltaE2000(LabFromLinear(shown / kNumPixels), LabFromLinear(there / kNumPixels));
 }
 
 // How far a patch of the map lies from where the truth shows it; nullopt where it is not found.
@@ -191,14 +234,8 @@ MapCoverage MeasureCoverage(const SurveyTruth& truth, const std::vector<Eigen::V
 
 MarkErrors MeasureMarks(const SurveyTruth& truth, const SurveyOptions& options,
                         const MemoryMap& map) {
-  SeabedOptions seabed_options;
-  seabed_options.seed = static_cast<uint64_t>(options.seed);
-  seabed_options.relief = options.relief;
-  seabed_options.cell = truth.surface.CellSize();
-  const Seabed seabed(seabed_options);
-  const GridSpec& ground = truth.surface.Ground().Grid();
-  AlbedoMap colours(seabed, ground.MinX(), ground.MinY(), ground.MaxX(), ground.MaxY(),
-                    size_t{200} << 20);
+  const Seabed seabed(OptionsOfSeabed(truth, options));
+  AlbedoMap colours = ColoursOf(seabed, truth);
   std::vector<double> errors;
   const int side = static_cast<int>(std::sqrt(double{kNumMarks} * 2));
   for (int i = 0; i < side * side; ++i) {
@@ -213,6 +250,22 @@ MarkErrors MeasureMarks(const SurveyTruth& truth, const SurveyOptions& options,
     if (error) errors.push_back(*error);
   }
   return {static_cast<int>(errors.size()), QuantileOr0(errors, 0.5), QuantileOr0(errors, 0.95)};
+}
+
+double MeasureColors(const SurveyTruth& truth, const SurveyOptions& options, const MemoryMap& map) {
+  const Seabed seabed(OptionsOfSeabed(truth, options));
+  AlbedoMap colours = ColoursOf(seabed, truth);
+  double sum = 0;
+  int count = 0;
+  for (int y = kColorPatch; y + kColorPatch < map.Grid().height; y += 7 * kColorPatch) {
+    for (int x = kColorPatch; x + kColorPatch < map.Grid().width; x += 7 * kColorPatch) {
+      const auto difference = ColorError(truth, map, x, y, &colours);
+      if (!difference) continue;
+      sum += *difference;
+      ++count;
+    }
+  }
+  return count == 0 ? 0 : sum / count;
 }
 
 SeamSteps MeasureSeams(const SurveyTruth& truth, const MapPictureReader& read,

@@ -34,6 +34,9 @@ struct MarkErrors {
 MarkErrors MeasureMarks(const SurveyTruth& truth, const SurveyOptions& options,
                         const MemoryMap& map);
 
+// Mean CIEDE2000 of the map's colours, as means of 8 x 8 pixels all over it, to the seabed's own.
+double MeasureColors(const SurveyTruth& truth, const SurveyOptions& options, const MemoryMap& map);
+
 struct SeamSteps {
   int num_pairs = 0;
   double across = 0;  // median step of brightness, levels, between neighbours of two sources

@@ -1,4 +1,4 @@
-#include "tests/water/color_difference.h"
+#include "examples/benchmarks/map/color_difference.h"
 
 #include <cmath>
 

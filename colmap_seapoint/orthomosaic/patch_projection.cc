@@ -1,0 +1,52 @@
+#include "colmap_seapoint/orthomosaic/patch_projection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace colmap_seapoint {
+namespace {
+
+constexpr double kProbe = 24;       // pixels from the middle, where the lens is asked
+constexpr double kMaxError = 0.05;  // pixels
+constexpr double kMaxReach = 2;     // probes
+
+}  // namespace
+
+PatchProjection::PatchProjection(const MapView& view, const MapGrid& grid,
+                                 const Eigen::Vector3d& middle)
+    : view_(view), middle_(middle) {
+  const Eigen::Vector2d place = grid.PlaceOf(middle.x(), middle.y());
+  in_cam_ = view.InCam({place.x(), place.y(), middle.z()});
+  const Eigen::Vector3d map_units(grid.pixel_size, -grid.pixel_size, 1);  // a column, a row, height
+  in_cam_from_pixels_ = view.Rotation() * map_units.asDiagonal();
+  MakeLinear();
+}
+
+// The lens's second differences tell how far its tangent is right.
+void PatchProjection::MakeLinear() {
+  const auto pixel = view_.PixelOfInCam(in_cam_);
+  if (!pixel) return;
+  ray_ = in_cam_.head<2>() / in_cam_.z();
+  pixel_ = *pixel;
+  const double probe = kProbe / view_.GetCamera().MeanFocal();
+  const auto at = [&](double x, double y) {
+    return view_.GetCamera().ImgFromCam((ray_ + probe * Eigen::Vector2d(x, y)).homogeneous());
+  };
+  const auto left = at(-1, 0), right = at(1, 0), above = at(0, -1), below = at(0, 1),
+             corner = at(1, 1), opposite = at(1, -1);
+  if (!left || !right || !above || !below || !corner || !opposite) return;
+  pixel_from_ray_.col(0) = (*right - *left) / (2 * probe);
+  pixel_from_ray_.col(1) = (*below - *above) / (2 * probe);
+  double error = 0;
+  for (const auto& [found, x, y] :
+       {std::make_tuple(*left, -1, 0), std::make_tuple(*right, 1, 0),
+        std::make_tuple(*above, 0, -1), std::make_tuple(*below, 0, 1),
+        std::make_tuple(*corner, 1, 1), std::make_tuple(*opposite, 1, -1)}) {
+    const Eigen::Vector2d linear = pixel_ + pixel_from_ray_ * (probe * Eigen::Vector2d(x, y));
+    error = std::max(error, (found - linear).norm());
+  }
+  reach_ = probe * std::min(std::sqrt(kMaxError / std::max(error, 1e-9)), kMaxReach);
+}
+
+}  // namespace colmap_seapoint
