@@ -132,12 +132,12 @@ double CurvatureBetween(const SparseModel& a, const SparseModel& b, const Ground
   return CurvatureOf(of_a, apart.transpose() * frame.up, frame);
 }
 
-double BendInGsd(double curvature, const SparseModel& model, const GroundFrame& frame) {
-  if (model.cameras.empty()) return 0;
-  const double half_way =
-      std::min(0.5 * kWayInDistances * frame.distance, HalfLength(CentresOf(model), frame));
+GroundBend BendInGsd(double curvature, const SparseModel& model, const GroundFrame& frame) {
+  if (model.cameras.empty()) return {};
+  const double half_length = HalfLength(CentresOf(model), frame);
+  const double half_way = std::min(0.5 * kWayInDistances * frame.distance, half_length);
   const double gsd = frame.distance / model.cameras.begin()->second.MeanFocal();
-  return curvature * half_way * half_way / gsd;
+  return {curvature * half_way * half_way / gsd, curvature * half_length * half_length / gsd};
 }
 
 }  // namespace colmap_seapoint

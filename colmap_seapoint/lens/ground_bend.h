@@ -32,8 +32,11 @@ double CurvatureOf(const std::vector<Eigen::Vector3d>& places, const Eigen::Vect
 // the similarity that brings them nearest. 0 for fewer than 10 common points.
 double CurvatureBetween(const SparseModel& a, const SparseModel& b, const GroundFrame& frame);
 
-// The rise in the middle of a way that a curvature makes, in pixels there (GSD). The way: five
-// times the distance to the ground (10 metres at 2), or the survey's own where that is shorter.
-double BendInGsd(double curvature, const SparseModel& model, const GroundFrame& frame);
+// The rise in the middle of a way that a curvature makes, in pixels there (GSD).
+struct GroundBend {
+  double near = 0;   // over five times the distance to the ground (10 metres at 2), at most `whole`
+  double whole = 0;  // over the survey's own length: it grows with its square
+};
+GroundBend BendInGsd(double curvature, const SparseModel& model, const GroundFrame& frame);
 
 }  // namespace colmap_seapoint

@@ -27,7 +27,7 @@ LensDoubt DoubtOf(const BundleAdjustment& adjustment, const GroundFrame& frame,
                   double forms_curvature) {
   const double curvature = std::max(kSigmas * adjustment.centre_sigma, forms_curvature);
   LensDoubt doubt;
-  doubt.bend_gsd = BendInGsd(curvature, adjustment.model, frame);
+  doubt.bend = BendInGsd(curvature, adjustment.model, frame);
   double strongest = kMinCorrelation;
   for (const auto& [id, correlations] : adjustment.centre_correlations) {
     for (size_t k = 0; k < correlations.size(); ++k) {
@@ -40,16 +40,19 @@ LensDoubt DoubtOf(const BundleAdjustment& adjustment, const GroundFrame& frame,
 }
 
 std::string Say(const LensDoubt& doubt) {
-  char text[160];
-  std::snprintf(text, sizeof(text),
+  char near[100], whole[60];
+  std::snprintf(near, sizeof(near),
                 "the ground may be bent by %.1f GSD over 5 times the camera's distance",
-                doubt.bend_gsd);
-  if (doubt.bend_gsd <= kKnownGsd) return text;
+                doubt.bend.near);
+  if (doubt.bend.whole <= kKnownGsd) return near;
+  std::snprintf(whole, sizeof(whole), ", by %.0f over the whole survey", doubt.bend.whole);
+  const std::string text =
+      near + (doubt.bend.whole > doubt.bend.near ? std::string(whole) : std::string());
   const std::string trade =
       doubt.trades_with.empty() ? "" : " (it trades places with " + doubt.trades_with + ")";
   return text + trade +
-         "; a strip crosswise, the camera turned by 90 degrees, or a lens calibrated in water "
-         "would tell";
+         "; positions (GPS, a log), a strip crosswise, the camera turned by 90 degrees, or a lens "
+         "calibrated in water would tell";
 }
 
 }  // namespace colmap_seapoint

@@ -9,7 +9,7 @@
 namespace colmap_seapoint {
 
 struct LensDoubt {
-  double bend_gsd = 0;      // two standard deviations, or what the forms of lens differ by if more
+  GroundBend bend;          // two standard deviations, or what the forms of lens differ by if more
   std::string trades_with;  // the lens's parameter that the bend goes with; "" = none of them
 };
 
@@ -17,8 +17,8 @@ struct LensDoubt {
 LensDoubt DoubtOf(const BundleAdjustment& adjustment, const GroundFrame& frame,
                   double forms_curvature);
 
-// "the ground's bend is known to 0.3 GSD over 5 times its distance", or with what it trades places
-// and what would tell, where that is more than one GSD.
+// "the ground may be bent by 0.3 GSD over 5 times the camera's distance", with how far over the
+// whole survey, what it trades places with and what would tell, where it is more than one GSD.
 std::string Say(const LensDoubt& doubt);
 
 }  // namespace colmap_seapoint

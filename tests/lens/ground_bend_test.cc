@@ -66,6 +66,22 @@ TEST(GroundBendTest, WeightsSeeABend) {
   EXPECT_TRUE(CurvatureWeights(SparseModel(), *frame).empty());
 }
 
+TEST(GroundBendTest, GrowsWithTheSquareOfTheLength) {
+  const SparseModel model = ExactSurvey(ExactLens(), 4);
+  const auto frame = FindGroundFrame(model);
+  ASSERT_TRUE(frame);
+  double half = 0;
+  for (const PosedImage& image : model.images) {
+    half = std::max(
+        half, std::abs(frame->along.dot(image.cam_from_world.OriginInSource() - frame->centre)));
+  }
+  const GroundBend bend = BendInGsd(1e-3, model, *frame);
+  const double gsd = frame->distance / model.cameras.at(1).MeanFocal();
+  EXPECT_NEAR(bend.whole, 1e-3 * half * half / gsd, 1e-9);
+  const double half_way = std::min(half, 2.5 * frame->distance);
+  EXPECT_NEAR(bend.near, 1e-3 * half_way * half_way / gsd, 1e-9);
+}
+
 // What the equations say of the curvature's uncertainty against what noise does to it.
 TEST(GroundBendTest, TheUncertaintyIsThatOfManySurveys) {
   constexpr int kSurveys = 30;
@@ -99,10 +115,15 @@ TEST(GroundBendTest, TheUncertaintyIsThatOfManySurveys) {
 }
 
 TEST(LensDoubtTest, SaysWhatIsOpenAndWhatWouldTell) {
-  EXPECT_EQ(Say({0.3, "the distortion"}),
+  EXPECT_EQ(Say({{0.3, 0.3}, "the distortion"}),
             "the ground may be bent by 0.3 GSD over 5 times the camera's distance");
-  const std::string open = Say({12.34, "the distortion"});
+  const std::string transect = Say({{0.1, 46.4}, ""});
+  EXPECT_NE(transect.find("0.1 GSD"), std::string::npos);
+  EXPECT_NE(transect.find("by 46 over the whole survey"), std::string::npos);
+  EXPECT_NE(transect.find("positions"), std::string::npos);
+  const std::string open = Say({{12.34, 12.34}, "the distortion"});
   EXPECT_NE(open.find("12.3 GSD"), std::string::npos);
+  EXPECT_EQ(open.find("whole survey"), std::string::npos);
   EXPECT_NE(open.find("trades places with the distortion"), std::string::npos);
   EXPECT_NE(open.find("a strip crosswise"), std::string::npos);
 }
