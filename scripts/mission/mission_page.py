@@ -17,7 +17,7 @@ h1 { font-size: 1.6rem; margin: 0 0 .3rem; }
 h2 { font-size: 1.2rem; margin: 0; overflow-wrap: anywhere; }
 p { margin: .4rem 0; overflow-wrap: anywhere; }
 ul { list-style: none; margin: 1rem 0 0; padding: 0; display: grid; gap: 1rem;
-  grid-template-columns: repeat(auto-fill, minmax(min(100%, 21rem), 1fr)); }
+  align-items: start; grid-template-columns: repeat(auto-fill, minmax(min(100%, 21rem), 1fr)); }
 li { border: 2px solid #000; border-radius: .4rem; padding: .8rem; break-inside: avoid; }
 li.failed { border-style: dashed; }
 .state { font-weight: bold; }
