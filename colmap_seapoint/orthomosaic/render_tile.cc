@@ -49,8 +49,8 @@ struct Sum {  // of what pictures show of a pixel
 class LocalExposure {
  public:
   LocalExposure() = default;
-  LocalExposure(const Exposure& exposure, uint32_t picture_idx, const Picture& picture, float x,
-                float y)
+  LocalExposure(const Exposure& exposure, const Eigen::Vector2d& on_map, uint32_t picture_idx,
+                const Picture& picture, float x, float y)
       : x_(x), y_(y) {
     const auto at = [&](float px, float py) {
       return exposure.FactorAt(picture_idx, px / static_cast<float>(picture.luma.width),
@@ -59,9 +59,11 @@ class LocalExposure {
     constexpr float kStep = kBlockSize;
     factor_ = at(x, y);
     const Light right = at(x + kStep, y), below = at(x, y + kStep);
+    const Light of_all = exposure.FactorOnMap(on_map);
     for (size_t c = 0; c < 3; ++c) {
-      along_x_[c] = (right[c] - factor_[c]) / kStep;
-      along_y_[c] = (below[c] - factor_[c]) / kStep;
+      along_x_[c] = of_all[c] * (right[c] - factor_[c]) / kStep;
+      along_y_[c] = of_all[c] * (below[c] - factor_[c]) / kStep;
+      factor_[c] *= of_all[c];
     }
   }
 
@@ -196,12 +198,14 @@ bool TileCanvas::Brush::MoveTo(const MapGrid::Box& area) {
   projection_.emplace(view_, canvas_.scene_.relief.Grid(), middle);
   rise_ = LineOfSight::RiseTo(middle, camera_);
   rise_.reach = canvas_.sight_.ReachOf(middle, rise_);
-  exposure_ = LocalExposure();
-  if (const auto pixel = projection_->PixelOf(middle)) {
-    exposure_ = LocalExposure(canvas_.scene_.exposure, picture_idx_, *picture_,
-                              static_cast<float>(scale_x_ * pixel->x()),
-                              static_cast<float>(scale_y_ * pixel->y()));
-  }
+  const auto pixel = projection_->PixelOf(middle);  // of a picture's edge, the middle of it
+  const Camera& camera = view_.GetCamera();
+  const Eigen::Vector2d at =
+      pixel.value_or(Eigen::Vector2d(0.5 * camera.width, 0.5 * camera.height));
+  const Eigen::Vector2d on_map = canvas_.scene_.relief.Grid().PlaceOf(middle.x(), middle.y());
+  exposure_ =
+      LocalExposure(canvas_.scene_.exposure, on_map, picture_idx_, *picture_,
+                    static_cast<float>(scale_x_ * at.x()), static_cast<float>(scale_y_ * at.y()));
   return true;
 }
 

@@ -22,6 +22,7 @@ constexpr int kPlaneRounds = 10;
 constexpr int kMedianTrials = 300;
 constexpr size_t kMedianPoints = 1000;
 constexpr double kOutlierFactor = 3.5;  // times the median distance
+constexpr double kRadians = 3.14159265358979323846 / 180;  // a degree
 
 struct Plane {
   Eigen::Vector3d center, normal;
@@ -138,7 +139,7 @@ Eigen::Vector3d LongestSide(const Points& sample, const Eigen::Vector3d& normal)
   Eigen::Vector3d longest = first;
   double least = std::numeric_limits<double>::infinity();
   for (int degree = 0; degree < 90; ++degree) {
-    const Eigen::Vector3d side = Eigen::AngleAxisd(degree * EIGEN_PI / 180, normal) * first;
+    const Eigen::Vector3d side = Eigen::AngleAxisd(degree * kRadians, normal) * first;
     const Eigen::Vector3d other = normal.cross(side);
     const double a = ExtentAlong(few, side), b = ExtentAlong(few, other);
     if (a * b >= least) continue;

@@ -1,5 +1,6 @@
 #include "colmap_seapoint/orthomosaic/sources/exposure.h"
 
+#include <Eigen/QR>
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
@@ -41,7 +42,8 @@ std::array<Node, 4> NodesAt(double x, double y) {
 
 struct Row {  // two pictures of one block
   uint32_t picture[2];
-  Eigen::Vector2d place[2];    // in the picture, 0 ... 1
+  Eigen::Vector2d place[2];  // in the picture, 0 ... 1
+  Eigen::Vector2d on_map;
   Eigen::Vector3d difference;  // of the logarithms, first minus second
   double weight = 1;
 };
@@ -96,7 +98,8 @@ class RowCollector {
     if (!IsReadable(a) || !IsReadable(b)) return;
     const auto at_a = ShareOf(a.picture, place), at_b = ShareOf(b.picture, place);
     if (!at_a || !at_b) return;
-    rows->push_back({{a.picture, b.picture}, {*at_a, *at_b}, LogLight(a) - LogLight(b)});
+    rows->push_back(
+        {{a.picture, b.picture}, {*at_a, *at_b}, place.head<2>(), LogLight(a) - LogLight(b)});
   }
 
   // Where a picture shows a place, 0 ... 1 from its left and upper side.
@@ -139,18 +142,20 @@ class ExposureSystem {
   // The unknowns in a row, with their factors.
   std::vector<Node> TermsOf(const Row& row) const {
     std::vector<Node> terms;
-    for (int side = 0; side < 2; ++side) {
-      const double sign = side == 0 ? 1 : -1;
-      const auto picture = static_cast<int>(row.picture[side]);
-      terms.emplace_back(picture, sign);
-      const int falloff = falloff_of_[row.picture[side]];
-      if (falloff < 0) continue;
-      const int first = num_pictures_ + falloff * Exposure::kNumNodes;
-      for (const auto& [node, weight] : NodesAt(row.place[side].x(), row.place[side].y())) {
-        terms.emplace_back(first + node, sign * weight);
-      }
-    }
+    AddTerms(row.picture[0], row.place[0], 1, &terms);
+    AddTerms(row.picture[1], row.place[1], -1, &terms);
     return terms;
+  }
+  // The logarithm of what a picture's light is multiplied with, times `sign`.
+  void AddTerms(uint32_t picture, const Eigen::Vector2d& place, double sign,
+                std::vector<Node>* terms) const {
+    terms->emplace_back(static_cast<int>(picture), sign);
+    const int falloff = falloff_of_[picture];
+    if (falloff < 0) return;
+    const int first = num_pictures_ + falloff * Exposure::kNumNodes;
+    for (const auto& [node, weight] : NodesAt(place.x(), place.y())) {
+      terms->emplace_back(first + node, sign * weight);
+    }
   }
 
  private:
@@ -209,6 +214,30 @@ void Reweigh(const ExposureSystem& system, const Eigen::MatrixX3d& solution,
   }
 }
 
+// Of what the best picture of each place is multiplied with: the plane through it over the map.
+ExposureTrend FindTrend(const ExposureSystem& system, const Eigen::MatrixX3d& solution,
+                        const std::vector<Row>& rows) {
+  ExposureTrend trend;
+  for (const Row& row : rows) trend.place += row.on_map / static_cast<double>(rows.size());
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero(), right = Eigen::Matrix3d::Zero();
+  for (const Row& row : rows) {
+    std::vector<Node> terms;
+    system.AddTerms(row.picture[0], row.place[0], 1, &terms);
+    Eigen::RowVector3d logarithms = Eigen::RowVector3d::Zero();
+    for (const auto& [i, a] : terms) logarithms += a * solution.row(i);
+    const Eigen::Vector3d basis = (row.on_map - trend.place).homogeneous();
+    normal += basis * basis.transpose();
+    right += basis * logarithms;
+  }
+  // Of all on one line, or in one place, what can be told.
+  const Eigen::Matrix3d plane = normal.completeOrthogonalDecomposition().solve(right);
+  if (!plane.allFinite()) return trend;
+  trend.along_x = plane.row(0).transpose();
+  trend.along_y = plane.row(1).transpose();
+  trend.mean = plane.row(2).transpose();
+  return trend;
+}
+
 Light FactorOf(const Eigen::RowVector3d& logarithms) {
   Light factor;
   for (size_t c = 0; c < 3; ++c) {
@@ -252,6 +281,17 @@ Light Exposure::FactorAt(uint32_t picture, float x, float y) const {
   return factor;
 }
 
+Light Exposure::FactorOnMap(const Eigen::Vector2d& place) const {
+  const Eigen::Vector2d way = place - trend_.place;
+  Light factor;
+  for (size_t c = 0; c < 3; ++c) {
+    const auto i = static_cast<Eigen::Index>(c);
+    const double log = trend_.mean[i] + way.x() * trend_.along_x[i] + way.y() * trend_.along_y[i];
+    factor[c] = static_cast<float>(std::exp(std::clamp(-log, -kMaxLogGain, kMaxLogGain)));
+  }
+  return factor;
+}
+
 Exposure BalanceExposure(const Relief& relief, const std::vector<MapView>& views,
                          const SourceBlocks& sources) {
   int num_falloffs = 0;
@@ -271,7 +311,8 @@ Exposure BalanceExposure(const Relief& relief, const std::vector<MapView>& views
   for (auto& falloff : falloffs) {
     for (Light& node : falloff) node = FactorOf(solution.row(at++));
   }
-  return Exposure(std::move(gains), falloff_of, std::move(falloffs));
+  return Exposure(std::move(gains), falloff_of, std::move(falloffs),
+                  FindTrend(system, solution, rows));
 }
 
 Exposure EqualExposure(size_t num_pictures) {

@@ -11,6 +11,14 @@
 
 namespace colmap_seapoint {
 
+// What balancing changes all over the map, and must not: logarithms, linear about a place of it. In
+// neighbours a slanted falloff looks like gains that rise along the survey.
+struct ExposureTrend {
+  Eigen::Vector2d place = Eigen::Vector2d::Zero();  // in the map's frame
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();   // by channel
+  Eigen::Vector3d along_x = Eigen::Vector3d::Zero(), along_y = Eigen::Vector3d::Zero();
+};
+
 // What the light of a picture is multiplied with: a gain a picture and channel, and what lamp and
 // lens take away towards the borders, the same in all pictures of one camera.
 class Exposure {
@@ -19,19 +27,23 @@ class Exposure {
   static constexpr int kNumNodes = kNodesX * kNodesY;
 
   Exposure(std::vector<Light> gains, std::vector<int> falloff_of,
-           std::vector<std::array<Light, kNumNodes>> falloffs)
+           std::vector<std::array<Light, kNumNodes>> falloffs, const ExposureTrend& trend = {})
       : gains_(std::move(gains)),
         falloff_of_(std::move(falloff_of)),
-        falloffs_(std::move(falloffs)) {}
+        falloffs_(std::move(falloffs)),
+        trend_(trend) {}
 
   const Light& Gain(uint32_t picture) const { return gains_[picture]; }
   // At a place of the picture, 0 ... 1 from its left and upper side.
   Light FactorAt(uint32_t picture, float x, float y) const;
+  // Of all pictures, at a place of the map: takes the trend back.
+  Light FactorOnMap(const Eigen::Vector2d& place) const;
 
  private:
   std::vector<Light> gains_;
   std::vector<int> falloff_of_;  // by picture; -1: none
   std::vector<std::array<Light, kNumNodes>> falloffs_;
+  ExposureTrend trend_;
 };
 
 // From what the pictures show of the same blocks: least squares of the logarithms' differences,

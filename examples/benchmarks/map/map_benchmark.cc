@@ -139,6 +139,7 @@ int Draw(const std::vector<std::string>& arguments) {
   add("output_path", po::value(&output_path)->required(), "folder for the pictures");
   add("pixel_size", Default(&options.pixel_size), "the model's unit; 0: the survey's GSD");
   add("fill", Default(&options.fill), "fill holes");
+  add("balance", Default(&options.balance), "one exposure for all pictures");
   add("num_threads", Default(&options.num_threads), "-1: all");
   if (!ParseOptions(description, arguments)) return 0;
   const SparseModel model = ReadSparseModel(input_path, ModelContent::kPosesAndPoints);

@@ -68,5 +68,36 @@ TEST(Exposure, NothingInCommonChangesNothing) {
   }
 }
 
+// Pictures that grow darker all along the survey may be so because the ground does.
+TEST(Exposure, ChangesNoColourAllOverTheMap) {
+  const SourceWorld world(12, 40, 40);
+  SourceBlocks sources = world.Sources([](uint32_t picture, const Eigen::Vector2d&, size_t) {
+    return std::exp(-0.1 * (picture % 6));
+  });
+  const Exposure exposure = BalanceExposure(world.GetRelief(), world.Views(), sources);
+  double with[2] = {0, 0}, without[2] = {0, 0};  // mean logarithms in the left and right third
+  int count[2] = {0, 0};
+  const BlockRelief& blocks = world.GetRelief().Blocks();
+  for (int y = 0; y < blocks.height; ++y) {
+    for (int x = 0; x < blocks.width; ++x) {
+      const int32_t at = sources.slot[blocks.At(x, y)];
+      const int side = x < 13 ? 0 : 1;
+      if (at < 0 || sources.Of(at)[0].picture == kNoPicture || (x >= 13 && x < 27)) continue;
+      const Eigen::Vector3d place = PlaceInBlock(world.GetRelief(), x, y);
+      const uint32_t picture = sources.Of(at)[0].picture;
+      const auto pixel = world.Views()[picture].PixelOf(place);
+      const Light factor = exposure.FactorAt(picture, static_cast<float>(pixel->x() / 480),
+                                             static_cast<float>(pixel->y() / 500));
+      without[side] += std::log(double{factor[1]});
+      with[side] += std::log(double{factor[1] * exposure.FactorOnMap(place.head<2>())[1]});
+      ++count[side];
+    }
+  }
+  ASSERT_GT(std::min(count[0], count[1]), 300);
+  EXPECT_GT(without[1] / count[1] - without[0] / count[0], 0.25);
+  EXPECT_NEAR(with[1] / count[1], with[0] / count[0], 0.05);
+  EXPECT_NEAR(with[0] / count[0], 0, 0.05);
+}
+
 }  // namespace
 }  // namespace colmap_seapoint
