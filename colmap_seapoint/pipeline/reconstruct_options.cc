@@ -49,6 +49,11 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
   pairs.Bind(table);
   matching.Bind(table);
   densification.Bind(table);
+  table->Add("completeness", &report_completeness,
+             "at the end, report what the clouds cover and where to go back to, in "
+             "report/completeness/",
+             "ours");
+  completeness.Bind(table);
   run.Bind(table);
   table->MarkOutput("workspace_path");
 }

@@ -10,6 +10,7 @@
 #include "colmap_seapoint/georeference/scale_sources.h"
 #include "colmap_seapoint/pairing/pair_options.h"
 #include "colmap_seapoint/pictures/image_reader_options.h"
+#include "densify/completeness/completeness_options.h"
 #include "densify/partial_densification_options.h"
 #include "feature/detector/seapoint_detector.h"
 #include "feature/matching/matching_options.h"
@@ -38,6 +39,8 @@ struct AutomaticReconstructorOptions {
   SeaPointMatchingOptions matching;
   std::map<std::string, std::string> mapper;  // "Mapper.<option>" -> value, handed on
   PartialDensificationOptions densification;
+  bool report_completeness = true;
+  CompletenessOptions completeness;
   RunOptions run;
 
   void Bind(OptionTable* table);

@@ -18,6 +18,7 @@ std::string SummaryText(const std::vector<ModelSummary>& models, const RunReport
     out << "\n  " << model.units;
     if (!model.scaling.empty()) out << " (" << model.scaling << ")";
     out << "\n";
+    if (!model.completeness.empty()) out << "  completeness: " << model.completeness << "\n";
   }
   for (const RunReport::LeftOut& left_out : report.left_out) {
     out << "left out: " << left_out.name << ": " << left_out.reason << "\n";

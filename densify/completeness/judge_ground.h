@@ -13,15 +13,19 @@ namespace colmap_seapoint {
 void SpreadCells(const std::vector<SurveyView>& views, Ground* ground);
 
 struct JudgeOptions {
-  // A place is covered, too, that holds what its second nearest good picture can give at this many
-  // pixels a point; 0: the wanted spacing is asked for everywhere.
+  // Where the two pictures that measure a place best are farther from it than usual, what they can
+  // give at this many pixels a point is enough; 0: the wanted spacing is asked for everywhere.
   double pixels_a_point = 0;
+  // Units a pixel: what no two pictures see from two sides, and none sees finer than this, is
+  // background.
+  double background_gsd = 0;
   const AskedArea* asked = nullptr;  // nullptr: no area is asked for
 };
 
-// Fills cause, is_imaged, is_expected, num_views and parallax_deg. The same for any number of
-// threads. Where no picture sees a cell nothing is said yet (outline.h). About a microsecond an
-// uncovered cell and picture that may see it.
+// Fills cause, is_expected, num_views and parallax_deg. Background has a cause, but is
+// not expected: a camera that looks ahead shows much that nobody meant to measure (outline.h says
+// where it is, all the same). Where no picture sees a cell nothing is said yet. The same for any
+// number of threads. About a microsecond an uncovered cell and picture that may see it.
 void JudgeGround(const SightContext& context, const JudgeOptions& options, int num_threads,
                  Ground* ground);
 

@@ -21,9 +21,9 @@ struct PictureRecord {
 // A cell is covered when the cloud lies in three of its four depth cells. In parallel by picture.
 std::vector<PictureRecord> StartRecords(const SightContext& context, int num_threads);
 
-// Brightness deviation (as in PictureFacts) below which nothing can be matched in this survey: what
-// one covered cell in fifty stays below, a quarter of their median at the least. 0 without covered
-// cells.
+// Texture (as in PictureFacts) below which this survey's pictures could mostly not be matched: of
+// the cells below it less than half as many are covered as of those that have the covered cells'
+// median and more; a quarter of that median at the least. 0 without covered cells.
 double MinTexture(const std::vector<PictureRecord>& records,
                   const std::vector<PictureFacts>& facts);
 

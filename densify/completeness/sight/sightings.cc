@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 namespace colmap_seapoint {
 namespace {
@@ -12,6 +13,8 @@ const double kMinCosine = std::cos(80 / kDegPerRad);
 // Of the depth, and in cells of the ground: a predicted surface may be off by that without being
 // hidden.
 constexpr double kHiddenShare = 0.01, kHiddenCells = 3;
+
+constexpr double kMaxParallax = 0.2;  // radians
 
 // Of a picture that nobody has looked at.
 constexpr uint8_t kUnknownTexture = 255;
@@ -79,7 +82,6 @@ std::vector<Sight> SightsOf(const SightContext& context, const std::vector<int>&
     const auto pixel = view.Project(place);
     if (!pixel) continue;
     Sight sight;
-    sight.image_idx = image_idx;
     const double depth = view.rotation.row(2).dot(place) + view.translation.z();
     sight.kind = KindOf(context, image_idx, *pixel, depth, &sight.texture);
     const double cosine = normal.dot(to_camera) / (distance * normal_length);
@@ -103,14 +105,36 @@ double ParallaxDeg(const std::vector<Sight>& sights) {
 
 int NumGood(const std::vector<Sight>& sights) { return Count(sights, SightKind::kGood); }
 
-std::optional<double> SecondGsd(const std::vector<Sight>& sights) {
-  std::vector<double> gsd;
-  for (const Sight& s : sights) {
-    if (s.kind == SightKind::kGood) gsd.push_back(s.gsd);
+std::optional<double> PairGsd(const std::vector<Sight>& sights, double min_parallax_deg) {
+  const double max_cosine = std::cos(min_parallax_deg / kDegPerRad);
+  double least = std::numeric_limits<double>::infinity(), gsd = 0;
+  for (size_t k = 1; k < sights.size(); ++k) {
+    for (size_t m = 0; m < k; ++m) {
+      if (sights[k].kind != SightKind::kGood || sights[m].kind != SightKind::kGood) continue;
+      const double cosine = sights[m].toward.dot(sights[k].toward);
+      if (cosine > max_cosine) continue;
+      const double coarser = std::max(sights[k].gsd, sights[m].gsd);
+      // The chord between the two directions: the angle in radians, nearly.
+      const double parallax = std::min(kMaxParallax, std::sqrt(2 - 2 * cosine));
+      if (coarser >= least * parallax) continue;
+      least = coarser / parallax;
+      gsd = coarser;
+    }
   }
-  if (gsd.size() < 2) return std::nullopt;
-  std::nth_element(gsd.begin(), gsd.begin() + 1, gsd.end());
-  return gsd[1];
+  if (gsd == 0) return std::nullopt;
+  return gsd;
+}
+
+double NearestGsd(const std::vector<Sight>& sights) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Sight& s : sights) {
+    if (s.kind != SightKind::kMasked) nearest = std::min(nearest, s.gsd);
+  }
+  return nearest;
+}
+
+bool IsSeenFromTwoSides(const std::vector<Sight>& sights, double min_parallax_deg) {
+  return HasPair(sights, min_parallax_deg, IsSeen);
 }
 
 bool NeedsBadPictures(const SightContext& context, const std::vector<Sight>& sights) {

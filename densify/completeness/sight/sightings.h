@@ -15,7 +15,6 @@ namespace colmap_seapoint {
 enum class SightKind : uint8_t { kGood, kBad, kHidden, kMasked };
 
 struct Sight {
-  int image_idx = 0;
   SightKind kind = SightKind::kGood;
   uint8_t texture = 0;     // as in PictureFacts
   double gsd = 0;          // units a pixel on the surface, mean of both directions
@@ -42,8 +41,14 @@ std::vector<Sight> SightsOf(const SightContext& context, const std::vector<int>&
 double ParallaxDeg(const std::vector<Sight>& sights);
 // Good ones.
 int NumGood(const std::vector<Sight>& sights);
-// GSD of the better pair: the second smallest of the good ones; nullopt for fewer than two.
-std::optional<double> SecondGsd(const std::vector<Sight>& sights);
+// GSD of the coarser one of the two good pictures that measure the place best: whose GSD over their
+// parallax, which counts up to 11.5 degrees as in densification, is the least. nullopt where no two
+// see it `min_parallax_deg` apart.
+std::optional<double> PairGsd(const std::vector<Sight>& sights, double min_parallax_deg);
+// Of all but the masked ones; infinite for none.
+double NearestGsd(const std::vector<Sight>& sights);
+// Whether two pictures, be they blurred, see the place from two sides.
+bool IsSeenFromTwoSides(const std::vector<Sight>& sights, double min_parallax_deg);
 
 // Whether no two good pictures see the place from two sides, but bad ones make up for it: what is
 // measured in blurred pictures is not to be trusted.

@@ -32,7 +32,6 @@ class PlanePyramid {
   void Add(double u, double v, double h, double weight);
   // Sums up the coarser levels. To be called once, after the last Add().
   void Finish();
-  bool Empty() const { return levels_.front().empty(); }
 
   // The plane through the nearest surroundings that are known on all sides, at the finest level
   // that has such. Far outside of what is known, a level plane at the height of its nearest part.

@@ -57,7 +57,6 @@ class TiledGrid {
   bool Holds(const TileKey& key) const { return tiles_.count(key) > 0; }
   Tile& ExistingTile(const TileKey& key) { return tiles_.at(key); }
   const Tile& ExistingTile(const TileKey& key) const { return tiles_.at(key); }
-  size_t NumTiles() const { return tiles_.size(); }
 
   // Row by row: the same order whatever the order in which tiles were made.
   std::vector<TileKey> Keys() const {

@@ -1,11 +1,13 @@
 #include "examples/benchmarks/completeness/gap_truth.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 
 #include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/compare/point_index.h"
+#include "examples/survey/paths/survey_camera.h"
 #include "examples/survey/visibility.h"
 
 namespace colmap_seapoint {
@@ -17,10 +19,33 @@ const double kMinParallax = std::cos(2 * 3.14159265358979323846 / 180);
 
 enum class Kind { kGood, kBlurred, kLost, kRemoved, kHidden };
 
+// What no two pictures see from two sides, and none from nearer than so many times the survey's own
+// GSD, is background.
+constexpr double kBackground = 2;
+constexpr int kScaleStep = 7;  // every so many cells both ways tell the survey's own GSD
+
 struct Seen {
   Kind kind;
   Eigen::Vector3d toward;
+  double gsd;  // metres a pixel on the surface
 };
+
+// Of the coarser of the two good pictures whose GSD over their angle, up to 11.5 degrees, is least.
+double BestPairGsd(const std::vector<Seen>& seen) {
+  double least = kBeyond, gsd = kBeyond;
+  for (const Seen& a : seen) {
+    for (const Seen& b : seen) {
+      if (a.kind != Kind::kGood || b.kind != Kind::kGood) continue;
+      const double cosine = a.toward.dot(b.toward);
+      if (cosine > kMinParallax) continue;
+      const double coarser = std::max(a.gsd, b.gsd);
+      const double error = coarser / std::min(0.2, std::acos(std::clamp(cosine, -1.0, 1.0)));
+      if (error < least) gsd = coarser;
+      least = std::min(least, error);
+    }
+  }
+  return gsd;
+}
 
 bool HasPair(const std::vector<Seen>& seen, const std::set<Kind>& kinds) {
   for (size_t k = 1; k < seen.size(); ++k) {
@@ -52,8 +77,10 @@ class CellTruth {
       if (!pixel || !camera.InWater().InImage(*pixel)) continue;
       if ((center - hit.xyz).norm() > truth_.max_range) continue;
       const bool is_visible = visibility_.Project(i, hit.xyz, hit.normal).has_value();
-      seen.push_back(
-          {is_visible ? KindOf(image.name) : Kind::kHidden, (center - hit.xyz).normalized()});
+      const Eigen::Vector3d toward = (center - hit.xyz).normalized();
+      const double gsd = GsdAt(camera.InWater(), image.cam_from_world * hit.xyz) /
+                         std::sqrt(std::max(0.17, hit.normal.dot(toward)));
+      seen.push_back({is_visible ? KindOf(image.name) : Kind::kHidden, toward, gsd});
     }
     return seen;
   }
@@ -75,6 +102,12 @@ class CellTruth {
     if (Has(seen, Kind::kLost)) return GapCause::kPoseLost;
     return is_hidden ? GapCause::kOccluded : GapCause::kNeverImaged;
   }
+  bool IsBackground(const std::vector<Seen>& seen, double survey_gsd) const {
+    double nearest = kBeyond;
+    for (const Seen& s : seen) nearest = std::min(nearest, s.gsd);
+    return nearest > kBackground * survey_gsd &&
+           !HasPair(seen, {Kind::kGood, Kind::kBlurred, Kind::kLost, Kind::kRemoved});
+  }
   static bool Has(const std::vector<Seen>& seen, Kind kind) {
     for (const Seen& s : seen) {
       if (s.kind == kind) return true;
@@ -94,6 +127,34 @@ class CellTruth {
   SurfaceVisibility visibility_;
   std::map<uint32_t, PortCamera> cameras_;
 };
+
+double AreaOf(const SurveyTruth& truth, const GapTruth& result, const Eigen::Vector2d& place) {
+  return result.side * result.side /
+         std::max(0.1, truth.surface.Ground().Normal(place.x(), place.y()).z());
+}
+
+// Median over the points that the survey's pictures can give: near places give more of them.
+double SurveyGsd(const SurveyTruth& truth, const CellTruth& cells, const GapTruth& result) {
+  std::map<double, double> weights;
+  double total = 0;
+  for (int j = 0; j < result.ny; j += kScaleStep) {
+    for (int i = 0; i < result.nx; i += kScaleStep) {
+      const Eigen::Vector2d place = result.Place(i, j);
+      const double gsd =
+          BestPairGsd(cells.SeenAt(truth.surface.GroundAt(place.x(), place.y())));
+      if (gsd == kBeyond) continue;
+      const double weight = AreaOf(truth, result, place) / (gsd * gsd);
+      weights[gsd] += weight;
+      total += weight;
+    }
+  }
+  double below = 0;
+  for (const auto& [gsd, weight] : weights) {
+    below += weight;
+    if (2 * below >= total) return gsd;
+  }
+  return kBeyond;
+}
 
 void MarkGaps(double min_area, GapTruth* result) {
   std::vector<int> stack, part;
@@ -126,7 +187,7 @@ void MarkGaps(double min_area, GapTruth* result) {
 }  // namespace
 
 GapTruth MeasureGapTruth(const SurveyTruth& truth, const PlantedGaps& gaps, double spacing,
-                         const std::vector<Eigen::Vector3f>& points, int num_threads) {
+                         double step, const std::vector<Eigen::Vector3f>& points, int num_threads) {
   const GridSpec& grid = truth.surface.Ground().Grid();
   GapTruth result;
   result.side = 2 * spacing;
@@ -139,6 +200,7 @@ GapTruth MeasureGapTruth(const SurveyTruth& truth, const PlantedGaps& gaps, doub
   for (const Eigen::Vector3f& p : points) places.push_back(p.cast<double>());
   const PointIndex index(places);
   const CellTruth cell_truth(truth, gaps);
+  const double survey_gsd = SurveyGsd(truth, cell_truth, result);
   ParallelFor(num_threads, result.ny, [&](int64_t row) {
     const int j = static_cast<int>(row);
     for (int i = 0; i < result.nx; ++i) {
@@ -146,13 +208,15 @@ GapTruth MeasureGapTruth(const SurveyTruth& truth, const PlantedGaps& gaps, doub
       const SurfaceHit hit = truth.surface.GroundAt(place.x(), place.y());
       TruthCell& cell = result.At(i, j);
       const std::vector<Seen> seen = cell_truth.SeenAt(hit);
-      cell.is_expected = !seen.empty();
+      cell.is_expected = !seen.empty() && !cell_truth.IsBackground(seen, survey_gsd);
       if (!cell.is_expected) continue;
-      cell.area = result.side * result.side /
-                  std::max(0.1, truth.surface.Ground().Normal(place.x(), place.y()).z());
+      cell.area = AreaOf(truth, result, place);
       double squared = kBeyond;
       index.Nearest(hit.xyz, NearestOf::kAnyPoint, &squared);
-      const double radius = std::max(kCoveredGsd * truth.gsd, kCoveredSpacings * spacing);
+      const double pair_gsd = BestPairGsd(seen);
+      const double gsd = std::max(survey_gsd, pair_gsd == kBeyond ? 0 : pair_gsd);
+      const double radius =
+          std::max(kCoveredGsd * gsd, kCoveredSpacings * std::max(spacing, gsd * step));
       cell.is_covered = squared <= radius * radius;
       if (!cell.is_covered) cell.cause = cell_truth.CauseAt(seen, place);
     }
