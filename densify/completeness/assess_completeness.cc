@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "densify/completeness/background.h"
 #include "densify/completeness/gaps/merge_gaps.h"
 #include "densify/completeness/judge_ground.h"
 #include "densify/completeness/outline.h"
@@ -17,8 +18,6 @@ constexpr size_t kNumNearest = 5;
 // them.
 constexpr double kMinGapSpacings = 10;
 constexpr int kMinGapCells = 2;
-// Twice the survey's own GSD and more, where no two pictures see it from two sides, is background.
-constexpr double kBackgroundGsd = 2;
 // Radius of the disc that closes the outline, in widths of a picture.
 constexpr double kOutlineRadius = 0.75;
 
@@ -80,7 +79,7 @@ void Measure(CompletenessResult* result) {
   int64_t num_sampled = 0;
   std::vector<double> parallax;
   for (auto& [key, layer] : result->ground.layers) {
-    layer.cells.ForEach([&](int, int, const GroundCell& cell) {
+    layer.cells.ForEach([&](int x, int y, const GroundCell& cell) {
       if (!cell.is_expected) return;
       result->expected_area += cell.area;
       if (!cell.is_covered) {
@@ -90,7 +89,7 @@ void Measure(CompletenessResult* result) {
       }
       covered += cell.area;
       points += cell.count;
-      if (cell.num_views == 0) return;
+      if (cell.num_views == 0 || !IsSampledCell(x, y)) return;
       views += cell.num_views;
       ++num_sampled;
       parallax.push_back(cell.parallax_deg);
@@ -231,9 +230,8 @@ CompletenessResult AssessCompleteness(const CompletenessInput& input,
 
   const AskedArea* asked = input.asked.Empty() ? nullptr : &input.asked;
   SpreadCells(views, &ground);
-  JudgeGround(context,
-              {options.spacing > 0 ? 0 : step, kBackgroundGsd * result.gsd, asked}, num_threads,
-              &ground);
+  JudgeGround(context, {options.spacing > 0 ? 0 : step, asked}, num_threads, &ground);
+  LeaveOutBackground(result.gsd, &ground);
   JudgeUnseen(kOutlineRadius * plan.across, asked, lost, &ground);
   FillRecords(context, ground, num_threads, &result.records);
 

@@ -12,8 +12,6 @@ constexpr int kSide = TiledGrid<GroundCell>::kSide;
 // Without a limit of sight, pictures that look towards the horizon are cut off at that many
 // heights.
 constexpr double kMaxHeights = 8;
-// Views and parallax of covered cells are looked at on every fourth cell both ways.
-constexpr int kSampleCells = 4;
 // A hole on a wall: covered within so many cells in three of four directions, at about its depth.
 constexpr int kHoleReach = 24, kHoleDepth = 12;
 constexpr double kDenseTile = 0.25;
@@ -122,7 +120,7 @@ class TileJudge {
       GroundCell& cell = tile[static_cast<size_t>(i)];
       if (!cell.is_covered) {
         JudgeCell(candidates, x, y, &cell);
-      } else if (has_bad || IsSampled(x, y)) {
+      } else if (has_bad || IsSampledCell(x, y)) {
         JudgeCovered(SightsAt(candidates, x, y, cell), x, y, &cell);
       }
       RespectArea(x, y, &cell);
@@ -162,15 +160,15 @@ class TileJudge {
     return SightsOf(context_, candidates, ground_.PlaceOf(*layer_, x, y, cell.height),
                     layer_->layer_from_world.transpose() * plane.Normal());
   }
-  // The same share of covered cells everywhere.
-  static bool IsSampled(int x, int y) { return x % kSampleCells == 0 && y % kSampleCells == 0; }
-  static void Note(const std::vector<Sight>& sights, GroundCell* cell) {
+  void Note(const std::vector<Sight>& sights, GroundCell* cell) const {
+    cell->has_pair = IsSeenFromTwoSides(sights, context_.min_parallax_deg);
+    cell->gsd = static_cast<float>(NearestGsd(sights));
     cell->num_views = static_cast<uint8_t>(std::min(255, NumGood(sights)));
     cell->parallax_deg = static_cast<uint8_t>(std::lround(ParallaxDeg(sights)));
   }
   // What other layers look at must not change while they do.
   void JudgeCovered(const std::vector<Sight>& sights, int x, int y, GroundCell* cell) const {
-    if (IsSampled(x, y)) Note(sights, cell);
+    if (IsSampledCell(x, y)) Note(sights, cell);
     if (!is_top_ || !NeedsBadPictures(context_, sights) || IsSmooth(x, y, *cell)) return;
     cell->is_covered = false;
     cell->cause = GapCause::kBadPicture;
@@ -180,18 +178,14 @@ class TileJudge {
     if (!is_top_ && !IsHole(*layer_, x, y, cell->height, ground_.cell_side)) return;
     const std::vector<Sight> sights = SightsAt(candidates, x, y, *cell);
     if (sights.empty()) return;
+    Note(sights, cell);
     cell->is_expected = true;
     if (is_top_ && IsCoveredFromAfar(sights, x, y, *cell)) {
-      if (IsSampled(x, y)) Note(sights, cell);
-      cell->is_covered = true;
+      cell->is_covered = cell->is_from_afar = true;
       return;
     }
     cell->cause = CauseOf(context_, sights, ground_.PlaceOf(*layer_, x, y, cell->height));
-    if (cell->cause == GapCause::kOutOfArea || IsBackground(sights)) cell->is_expected = false;
-  }
-  bool IsBackground(const std::vector<Sight>& sights) const {
-    return !IsSeenFromTwoSides(sights, context_.min_parallax_deg) &&
-           NearestGsd(sights) > options_.background_gsd;
+    if (cell->cause == GapCause::kOutOfArea) cell->is_expected = false;
   }
   // Whether the surroundings hold what the two pictures that measure the place best can give.
   bool IsCoveredFromAfar(const std::vector<Sight>& sights, int x, int y,

@@ -139,7 +139,7 @@ void JudgeUnseen(double radius, const AskedArea* asked, const LostSight& lost, G
     const Eigen::Vector2d middle((x + 0.5) * ground->cell_side, (y + 0.5) * ground->cell_side);
     if (asked != nullptr && !asked->Contains(middle)) return;
     cell.is_expected = true;
-    if (cell.cause != GapCause::kNone) return;  // background
+    if (cell.is_covered || cell.cause != GapCause::kNone) return;  // background
     PredictCell(*ground, top, x, y, &cell);
     const bool is_lost = lost.RunThatSaw(ground->PlaceOf(top, x, y, cell.height)) >= 0;
     cell.cause = is_lost ? GapCause::kPoseLost : GapCause::kNeverImaged;

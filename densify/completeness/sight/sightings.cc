@@ -20,14 +20,13 @@ constexpr double kMaxParallax = 0.2;  // radians
 constexpr uint8_t kUnknownTexture = 255;
 
 SightKind KindOf(const SightContext& context, int image_idx, const Eigen::Vector2d& pixel,
-                 double depth, uint8_t* texture) {
+                 double depth, double slack, uint8_t* texture) {
   const auto i = static_cast<size_t>(image_idx);
   const PictureFacts& facts = (*context.facts)[i];
   const size_t cell = facts.Empty() ? 0 : facts.CellAt(pixel.x(), pixel.y());
   const uint8_t flags = facts.Empty() ? 0 : facts.flags[cell];
   *texture = facts.Empty() ? kUnknownTexture : facts.texture[cell];
   if (flags & kMaskedCell) return SightKind::kMasked;
-  const double slack = kHiddenShare * depth + kHiddenCells * context.cell_side;
   if (IsHidden((*context.depths)[i], pixel, depth, slack)) return SightKind::kHidden;
   return facts.is_bad || (flags & kBadlyExposedCell) ? SightKind::kBad : SightKind::kGood;
 }
@@ -83,9 +82,14 @@ std::vector<Sight> SightsOf(const SightContext& context, const std::vector<int>&
     if (!pixel) continue;
     Sight sight;
     const double depth = view.rotation.row(2).dot(place) + view.translation.z();
-    sight.kind = KindOf(context, image_idx, *pixel, depth, &sight.texture);
     const double cosine = normal.dot(to_camera) / (distance * normal_length);
-    sight.gsd = distance / view.camera->MeanFocal() / std::sqrt(cosine);
+    const double across = distance / view.camera->MeanFocal();
+    // A cell of depths holds a piece of a tilted surface from its nearest to its farthest end.
+    const double within_cell = kDepthCell * across * std::sqrt(1 - cosine * cosine) / cosine;
+    const double slack =
+        kHiddenShare * depth + kHiddenCells * context.cell_side + within_cell;
+    sight.kind = KindOf(context, image_idx, *pixel, depth, slack, &sight.texture);
+    sight.gsd = across / std::sqrt(cosine);
     sight.toward = to_camera / distance;
     sights.push_back(sight);
   }

@@ -24,10 +24,13 @@ inline constexpr double kCellSpacings = 2;  // side of a cell, in wanted spacing
 
 struct GroundCell {
   float height = 0;    // along the side's axis: mean of the points, or the predicted surface's
+  float gsd = 0;       // units a pixel on it, of the nearest picture
   float area = 0;      // units^2 of surface, along its slope
   uint16_t count = 0;  // points of enough confidence
   bool is_covered = false;
   bool is_thin = false;      // not covered, yet with too many points to call it a gap
+  bool is_from_afar = false;  // covered by what farther pictures than usual can give
+  bool has_pair = false;      // two pictures see it from two sides
   bool is_expected = false;  // part of what the survey should have covered
   GapCause cause = GapCause::kNone;
   // Of a sample of the covered cells: usable pictures that see it, and the largest angle between

@@ -77,6 +77,10 @@ class TiledGrid {
       }
     }
   }
+  template <typename Visitor>
+  void ForEach(const Visitor& visit) const {
+    const_cast<TiledGrid*>(this)->ForEach([&](int x, int y, const Cell& cell) { visit(x, y, cell); });
+  }
 
  private:
   std::unordered_map<TileKey, Tile, TileKeyHash> tiles_;

@@ -19,9 +19,12 @@ const double kMinParallax = std::cos(2 * 3.14159265358979323846 / 180);
 
 enum class Kind { kGood, kBlurred, kLost, kRemoved, kHidden };
 
-// What no two pictures see from two sides, and none from nearer than so many times the survey's own
-// GSD, is background.
-constexpr double kBackground = 2;
+// What no two good pictures see from two sides, and none from nearer than so many times the survey's
+// own GSD, is background.
+constexpr double kFarForOne = 2;
+// Where of what two see less than half as much is covered as at the survey's own GSD and nearer.
+constexpr double kFar = 1.1 * 1.1 * 1.1 * 1.1, kWindow = 1.1 * 1.1 * 1.1, kMostlyNothing = 0.5;
+constexpr double kMinAreaShare = 0.005;
 constexpr int kScaleStep = 7;  // every so many cells both ways tell the survey's own GSD
 
 struct Seen {
@@ -57,6 +60,12 @@ bool HasPair(const std::vector<Seen>& seen, const std::set<Kind>& kinds) {
     }
   }
   return false;
+}
+
+double NearestGsd(const std::vector<Seen>& seen) {
+  double nearest = kBeyond;
+  for (const Seen& s : seen) nearest = std::min(nearest, s.gsd);
+  return nearest;
 }
 
 class CellTruth {
@@ -101,12 +110,6 @@ class CellTruth {
     if (Has(seen, Kind::kGood) || Has(seen, Kind::kBlurred)) return GapCause::kImagedOnce;
     if (Has(seen, Kind::kLost)) return GapCause::kPoseLost;
     return is_hidden ? GapCause::kOccluded : GapCause::kNeverImaged;
-  }
-  bool IsBackground(const std::vector<Seen>& seen, double survey_gsd) const {
-    double nearest = kBeyond;
-    for (const Seen& s : seen) nearest = std::min(nearest, s.gsd);
-    return nearest > kBackground * survey_gsd &&
-           !HasPair(seen, {Kind::kGood, Kind::kBlurred, Kind::kLost, Kind::kRemoved});
   }
   static bool Has(const std::vector<Seen>& seen, Kind kind) {
     for (const Seen& s : seen) {
@@ -156,6 +159,44 @@ double SurveyGsd(const SurveyTruth& truth, const CellTruth& cells, const GapTrut
   return kBeyond;
 }
 
+// What decides whether a cell is background.
+struct Distance {
+  double gsd = 0;  // of the nearest picture
+  bool has_pair = false;
+};
+
+double LimitOfSight(double survey_gsd, const GapTruth& result,
+                    const std::vector<Distance>& distances) {
+  const auto covered_between = [&](double from, double to) {
+    std::pair<double, double> areas;  // all, covered
+    for (size_t k = 0; k < distances.size(); ++k) {
+      const TruthCell& cell = result.cells[k];
+      if (!cell.is_expected || !distances[k].has_pair) continue;
+      if (distances[k].gsd <= from || distances[k].gsd > to) continue;
+      areas.first += cell.area;
+      areas.second += cell.is_covered ? cell.area : 0;
+    }
+    return areas;
+  };
+  const auto all = covered_between(0, kBeyond), near = covered_between(0, survey_gsd);
+  for (double from = kFar * survey_gsd; from < 400 * survey_gsd; from *= 1.1) {
+    const auto [seen, covered] = covered_between(from, kWindow * from);
+    if (seen < kMinAreaShare * all.first) continue;
+    if (covered / seen < kMostlyNothing * near.second / near.first) return from;
+  }
+  return kBeyond;
+}
+
+void LeaveOutBackground(double survey_gsd, const std::vector<Distance>& distances,
+                        GapTruth* result) {
+  const double limit = LimitOfSight(survey_gsd, *result, distances);
+  const double limit_for_one = std::min(limit, kFarForOne * survey_gsd);
+  for (size_t k = 0; k < distances.size(); ++k) {
+    if (distances[k].gsd <= (distances[k].has_pair ? limit : limit_for_one)) continue;
+    result->cells[k].is_expected = result->cells[k].is_covered = false;
+  }
+}
+
 void MarkGaps(double min_area, GapTruth* result) {
   std::vector<int> stack, part;
   std::vector<bool> is_done(result->cells.size(), false);
@@ -201,6 +242,7 @@ GapTruth MeasureGapTruth(const SurveyTruth& truth, const PlantedGaps& gaps, doub
   const PointIndex index(places);
   const CellTruth cell_truth(truth, gaps);
   const double survey_gsd = SurveyGsd(truth, cell_truth, result);
+  std::vector<Distance> distances(result.cells.size());
   ParallelFor(num_threads, result.ny, [&](int64_t row) {
     const int j = static_cast<int>(row);
     for (int i = 0; i < result.nx; ++i) {
@@ -208,19 +250,22 @@ GapTruth MeasureGapTruth(const SurveyTruth& truth, const PlantedGaps& gaps, doub
       const SurfaceHit hit = truth.surface.GroundAt(place.x(), place.y());
       TruthCell& cell = result.At(i, j);
       const std::vector<Seen> seen = cell_truth.SeenAt(hit);
-      cell.is_expected = !seen.empty() && !cell_truth.IsBackground(seen, survey_gsd);
+      cell.is_expected = !seen.empty();
       if (!cell.is_expected) continue;
       cell.area = AreaOf(truth, result, place);
       double squared = kBeyond;
       index.Nearest(hit.xyz, NearestOf::kAnyPoint, &squared);
       const double pair_gsd = BestPairGsd(seen);
-      const double gsd = std::max(survey_gsd, pair_gsd == kBeyond ? 0 : pair_gsd);
+      const bool has_pair = pair_gsd < kBeyond;
+      distances[static_cast<size_t>(j * result.nx + i)] = {NearestGsd(seen), has_pair};
+      const double gsd = std::max(survey_gsd, has_pair ? pair_gsd : 0);
       const double radius =
           std::max(kCoveredGsd * gsd, kCoveredSpacings * std::max(spacing, gsd * step));
       cell.is_covered = squared <= radius * radius;
       if (!cell.is_covered) cell.cause = cell_truth.CauseAt(seen, place);
     }
   });
+  LeaveOutBackground(survey_gsd, distances, &result);
   MarkGaps(100 * spacing * spacing, &result);
   return result;
 }

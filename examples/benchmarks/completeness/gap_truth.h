@@ -33,7 +33,8 @@ struct GapTruth {
 // place is covered when a point lies within two GSD (or one and a half spacings) of it: of those of
 // the two pictures that measure it best, where these are coarser than the survey's own. Expected is
 // what a picture sees that was taken, or would have been (the removed ones), but for background:
-// what no two see from two sides, and all see at twice the survey's own GSD or more.
+// what no two see from two sides, and all see at twice the survey's own GSD or more, and what lies
+// beyond the limit of sight, as completeness_reporter defines it, by exact visibility.
 GapTruth MeasureGapTruth(const SurveyTruth& truth, const PlantedGaps& gaps, double spacing,
                          double step, const std::vector<Eigen::Vector3f>& points, int num_threads);
 
