@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "densify/completeness/background.h"
 #include "densify/completeness/gaps/merge_gaps.h"
 #include "densify/completeness/judge_ground.h"
 #include "densify/completeness/outline.h"
+#include "densify/completeness/survey_limits.h"
 #include "densify/completeness/survey_scale.h"
 #include "densify/match/cell_grid.h"
 
@@ -223,15 +223,15 @@ CompletenessResult AssessCompleteness(const CompletenessInput& input,
   const std::vector<DepthCells> depths = DrawDepths(ground, views, num_threads);
   result.lost_runs = FindLostRuns(NamesOf(model), input.lost);
   const LostSight lost(result.lost_runs, views, plan.across);
-  SightContext context{
-      &views, &depths, &input.facts, &lost, ground.cell_side, options.min_parallax_deg, 0};
+  const SightContext context{
+      &views, &depths, &input.facts, &lost, ground.cell_side, options.min_parallax_deg};
   result.records = StartRecords(context, num_threads);
-  context.min_texture = MinTexture(result.records, input.facts);
 
   const AskedArea* asked = input.asked.Empty() ? nullptr : &input.asked;
   SpreadCells(views, &ground);
   JudgeGround(context, {options.spacing > 0 ? 0 : step, asked}, num_threads, &ground);
   LeaveOutBackground(result.gsd, &ground);
+  TellWhatLacksTexture(&ground);
   JudgeUnseen(kOutlineRadius * plan.across, asked, lost, &ground);
   FillRecords(context, ground, num_threads, &result.records);
 

@@ -163,6 +163,7 @@ class TileJudge {
   void Note(const std::vector<Sight>& sights, GroundCell* cell) const {
     cell->has_pair = IsSeenFromTwoSides(sights, context_.min_parallax_deg);
     cell->gsd = static_cast<float>(NearestGsd(sights));
+    cell->texture = MedianTexture(sights);
     cell->num_views = static_cast<uint8_t>(std::min(255, NumGood(sights)));
     cell->parallax_deg = static_cast<uint8_t>(std::lround(ParallaxDeg(sights)));
   }

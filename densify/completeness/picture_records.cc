@@ -1,7 +1,6 @@
 #include "densify/completeness/picture_records.h"
 
 #include <algorithm>
-#include <array>
 
 #include "colmap_seapoint/base/parallel.h"
 
@@ -10,8 +9,6 @@ namespace {
 
 constexpr int kSide = TiledGrid<GroundCell>::kSide;
 constexpr int kMinDrawn = 3;  // of four depth cells
-constexpr double kMostlyFailed = 0.5, kOfMedian = 0.25;
-
 static_assert(kPictureCell == 2 * kDepthCell);
 
 // Depth cells beyond the picture's edge are missing from both counts.
@@ -97,46 +94,6 @@ void FillFromTile(const Ground& ground, const JudgedTile& judged, const SurveyVi
   }
 }
 
-struct TextureCounts {  // cells by texture
-  std::array<int64_t, 256> all = {}, covered = {};
-};
-
-TextureCounts CountTextures(const std::vector<PictureRecord>& records,
-                            const std::vector<PictureFacts>& facts) {
-  TextureCounts counts;
-  for (size_t i = 0; i < records.size(); ++i) {
-    if (facts[i].Empty() || facts[i].is_bad) continue;
-    const size_t count = std::min(facts[i].texture.size(), records[i].states.size());
-    for (size_t k = 0; k < count; ++k) {
-      if (facts[i].flags[k] != 0) continue;
-      ++counts.all[facts[i].texture[k]];
-      counts.covered[facts[i].texture[k]] += records[i].states[k] == CellState::kCovered ? 1 : 0;
-    }
-  }
-  return counts;
-}
-
-// Of the cells with textures in [from, to); 0 for none.
-double CoveredShare(const TextureCounts& counts, int from, int to) {
-  int64_t all = 0, covered = 0;
-  for (int t = from; t < to; ++t) {
-    all += counts.all[static_cast<size_t>(t)];
-    covered += counts.covered[static_cast<size_t>(t)];
-  }
-  return all > 0 ? static_cast<double>(covered) / static_cast<double>(all) : 0;
-}
-
-// Of the covered cells; -1 for none.
-int MedianTexture(const TextureCounts& counts) {
-  int64_t all = 0, below = 0;
-  for (const int64_t count : counts.covered) all += count;
-  for (size_t t = 0; t < counts.covered.size(); ++t) {
-    below += counts.covered[t];
-    if (2 * below > all) return static_cast<int>(t);
-  }
-  return -1;
-}
-
 }  // namespace
 
 double PictureRecord::Share(CellState state) const {
@@ -152,17 +109,6 @@ std::vector<PictureRecord> StartRecords(const SightContext& context, int num_thr
     records[i] = StartRecord((*context.views)[i], (*context.depths)[i], (*context.facts)[i]);
   });
   return records;
-}
-
-double MinTexture(const std::vector<PictureRecord>& records,
-                  const std::vector<PictureFacts>& facts) {
-  const TextureCounts counts = CountTextures(records, facts);
-  const int median = MedianTexture(counts);
-  if (median < 0) return 0;
-  const double usual = CoveredShare(counts, median, 256);
-  int least = 0;
-  while (least < median && CoveredShare(counts, 0, least + 1) < kMostlyFailed * usual) ++least;
-  return std::max<double>(least, kOfMedian * median);
 }
 
 void FillRecords(const SightContext& context, const Ground& ground, int num_threads,

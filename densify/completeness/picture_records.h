@@ -21,12 +21,6 @@ struct PictureRecord {
 // A cell is covered when the cloud lies in three of its four depth cells. In parallel by picture.
 std::vector<PictureRecord> StartRecords(const SightContext& context, int num_threads);
 
-// Texture (as in PictureFacts) below which this survey's pictures could mostly not be matched: of
-// the cells below it less than half as many are covered as of those that have the covered cells'
-// median and more; a quarter of that median at the least. 0 without covered cells.
-double MinTexture(const std::vector<PictureRecord>& records,
-                  const std::vector<PictureFacts>& facts);
-
 // Carries the ground's causes into the pictures that see it. In parallel by picture.
 void FillRecords(const SightContext& context, const Ground& ground, int num_threads,
                  std::vector<PictureRecord>* records);

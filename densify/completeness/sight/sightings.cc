@@ -16,9 +16,6 @@ constexpr double kHiddenShare = 0.01, kHiddenCells = 3;
 
 constexpr double kMaxParallax = 0.2;  // radians
 
-// Of a picture that nobody has looked at.
-constexpr uint8_t kUnknownTexture = 255;
-
 SightKind KindOf(const SightContext& context, int image_idx, const Eigen::Vector2d& pixel,
                  double depth, double slack, uint8_t* texture) {
   const auto i = static_cast<size_t>(image_idx);
@@ -53,18 +50,6 @@ bool IsSeen(SightKind kind) { return kind == SightKind::kGood || kind == SightKi
 int Count(const std::vector<Sight>& sights, SightKind kind) {
   return static_cast<int>(
       std::count_if(sights.begin(), sights.end(), [&](const Sight& s) { return s.kind == kind; }));
-}
-
-// Whether what the second best picture shows is too smooth to be matched.
-bool LacksTexture(const std::vector<Sight>& sights, double min_texture) {
-  std::vector<uint8_t> texture;
-  for (const Sight& s : sights) {
-    if (s.kind == SightKind::kGood) texture.push_back(s.texture);
-  }
-  if (texture.size() < 2) return false;
-  const auto middle = texture.begin() + static_cast<std::ptrdiff_t>(texture.size() / 2);
-  std::nth_element(texture.begin(), middle, texture.end());
-  return *middle < min_texture;
 }
 
 }  // namespace
@@ -141,6 +126,17 @@ bool IsSeenFromTwoSides(const std::vector<Sight>& sights, double min_parallax_de
   return HasPair(sights, min_parallax_deg, IsSeen);
 }
 
+uint8_t MedianTexture(const std::vector<Sight>& sights) {
+  std::vector<uint8_t> texture;
+  for (const Sight& s : sights) {
+    if (s.kind == SightKind::kGood) texture.push_back(s.texture);
+  }
+  if (texture.size() < 2) return kUnknownTexture;
+  const auto middle = texture.begin() + static_cast<std::ptrdiff_t>(texture.size() / 2);
+  std::nth_element(texture.begin(), middle, texture.end());
+  return *middle;
+}
+
 bool NeedsBadPictures(const SightContext& context, const std::vector<Sight>& sights) {
   return !HasPair(sights, context.min_parallax_deg, IsGood) &&
          HasPair(sights, context.min_parallax_deg, IsSeen);
@@ -152,10 +148,7 @@ GapCause CauseOf(const SightContext& context, const std::vector<Sight>& sights,
   const bool has_hidden = Count(sights, SightKind::kHidden) > 0;
   const bool has_masked = Count(sights, SightKind::kMasked) > 0;
   const int num_good = NumGood(sights);
-  if (HasPair(sights, angle, IsGood)) {
-    return LacksTexture(sights, context.min_texture) ? GapCause::kNoTexture
-                                                     : GapCause::kViewsDisagree;
-  }
+  if (HasPair(sights, angle, IsGood)) return GapCause::kViewsDisagree;
   if (HasPair(sights, angle, IsSeen)) return GapCause::kBadPicture;
   if (context.lost->RunThatSaw(place) >= 0) return GapCause::kPoseLost;
   if (has_hidden && HasPair(sights, angle, [](SightKind k) {

@@ -12,6 +12,9 @@
 
 namespace colmap_seapoint {
 
+// Of pictures that nobody has looked at.
+inline constexpr uint8_t kUnknownTexture = 255;
+
 enum class SightKind : uint8_t { kGood, kBad, kHidden, kMasked };
 
 struct Sight {
@@ -29,7 +32,6 @@ struct SightContext {
   const LostSight* lost;
   double cell_side = 1;  // units
   double min_parallax_deg = 2;
-  double min_texture = 0;  // as in PictureFacts: below it nothing can be matched
 };
 
 // `normal` need not be of unit length. The pictures that hold the place within their range and see
@@ -47,6 +49,8 @@ int NumGood(const std::vector<Sight>& sights);
 std::optional<double> PairGsd(const std::vector<Sight>& sights, double min_parallax_deg);
 // Of all but the masked ones; infinite for none.
 double NearestGsd(const std::vector<Sight>& sights);
+// Median of the good ones'; kUnknownTexture for fewer than two.
+uint8_t MedianTexture(const std::vector<Sight>& sights);
 // Whether two pictures, be they blurred, see the place from two sides.
 bool IsSeenFromTwoSides(const std::vector<Sight>& sights, double min_parallax_deg);
 
@@ -54,7 +58,8 @@ bool IsSeenFromTwoSides(const std::vector<Sight>& sights, double min_parallax_de
 // measured in blurred pictures is not to be trusted.
 bool NeedsBadPictures(const SightContext& context, const std::vector<Sight>& sights);
 
-// The best cause: the first thing that would have had to be otherwise. kNone when no picture holds
+// The best cause: the first thing that would have had to be otherwise. kViewsDisagree where two good
+// pictures see it from two sides, whatever they show (survey_limits.h). kNone when no picture holds
 // the place, not even a hidden, masked or lost one.
 GapCause CauseOf(const SightContext& context, const std::vector<Sight>& sights,
                  const Eigen::Vector3d& place);

@@ -36,6 +36,7 @@ struct GroundCell {
   // Of a sample of the covered cells: usable pictures that see it, and the largest angle between
   // two of them, up to 180 degrees.
   uint8_t num_views = 0;
+  uint8_t texture = 255;  // what its good pictures show of it, as in PictureFacts
   uint8_t parallax_deg = 0;
 };
 

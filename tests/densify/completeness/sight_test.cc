@@ -104,7 +104,7 @@ class Causes : public testing::Test {
   GapCause Of(const std::vector<Sight>& sights) { return CauseOf(context_, sights, {0, 0, 0}); }
 
   LostSight lost_{{}, {}, 1};
-  SightContext context_{nullptr, nullptr, nullptr, &lost_, 1, 2, 10};
+  SightContext context_{nullptr, nullptr, nullptr, &lost_, 1, 2};
 };
 
 TEST_F(Causes, InOrder) {
@@ -113,7 +113,8 @@ TEST_F(Causes, InOrder) {
   EXPECT_EQ(Of({See(K::kGood, 0)}), GapCause::kImagedOnce);
   EXPECT_EQ(Of({See(K::kGood, 0), See(K::kGood, 1)}), GapCause::kSmallParallax);
   EXPECT_EQ(Of({See(K::kGood, 0), See(K::kGood, 9)}), GapCause::kViewsDisagree);
-  EXPECT_EQ(Of({See(K::kGood, 0, 3), See(K::kGood, 9, 4)}), GapCause::kNoTexture);
+  EXPECT_EQ(MedianTexture({See(K::kGood, 0, 3), See(K::kBad, 1, 9), See(K::kGood, 9, 4)}), 4);
+  EXPECT_EQ(MedianTexture({See(K::kGood, 0, 3)}), kUnknownTexture);
   EXPECT_EQ(Of({See(K::kGood, 0), See(K::kBad, 9)}), GapCause::kBadPicture);
   EXPECT_EQ(Of({See(K::kGood, 0), See(K::kHidden, 9)}), GapCause::kOccluded);
   EXPECT_EQ(Of({See(K::kHidden, 9)}), GapCause::kOccluded);

@@ -1,4 +1,4 @@
-// What a survey shows beside what it was made to measure.
+// How far, and with how little texture, a survey could measure: what it has covered tells that.
 #pragma once
 
 #include "densify/completeness/surface/ground.h"
@@ -15,5 +15,15 @@ double LimitOfSight(double survey_gsd, const Ground& ground);
 // nothing is expected any more, nor where no two pictures see a place from two sides and the
 // nearest has twice the survey's GSD or more. Such cells keep their cause (outline.h).
 void LeaveOutBackground(double survey_gsd, Ground* ground);
+
+// Texture, as in PictureFacts, from which on this survey's places were matched reliably: of what two
+// pictures see with that and more up to the upper quartile of what is covered, nine tenths as much is
+// covered as above it. A quarter of that quartile at the least: of what hardly any place shows
+// nothing is known. 0 where the pictures were not looked at. Of the top layer.
+double ReliableTexture(const Ground& ground);
+
+// Where two good pictures see a place from two sides, and it is missing all the same: kNoTexture
+// below that texture; with more they disagree. That brightness differs tells nothing: lamps move.
+void TellWhatLacksTexture(Ground* ground);
 
 }  // namespace colmap_seapoint
