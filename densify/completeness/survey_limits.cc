@@ -17,9 +17,8 @@ constexpr int kWindow = 3;    // bins that are looked at together
 constexpr double kMostlyNothing = 0.5;
 constexpr double kMinAreaShare = 0.005;  // of all, in a window: less tells nothing
 constexpr double kFarForOne = 2;         // of the survey's GSD
-constexpr double kUpperQuartile = 0.75;
-constexpr double kAsUsual = 0.9, kOfQuartile = 0.25;
-constexpr int kTextureReach = 2;  // of the textures that are looked at together
+constexpr double kAsGood = 0.9, kOfMedian = 0.25;
+constexpr int kTextureReach = 2;  // both ways, of the textures that are looked at together
 constexpr double kFew = 0.002;    // of all
 
 struct Bin {
@@ -75,12 +74,13 @@ Bin Sum(const Bins& bins, int from, int to) {
   return sum;
 }
 
-int UpperQuartile(const TextureBins& bins) {
+// Texture of the median of what is covered.
+int MedianCovered(const TextureBins& bins) {
   const double covered = Sum(bins, 0, static_cast<int>(bins.size())).covered;
   double below = 0;
   for (size_t t = 0; t < bins.size(); ++t) {
     below += bins[t].covered;
-    if (below > kUpperQuartile * covered) return static_cast<int>(t);
+    if (2 * below > covered) return static_cast<int>(t);
   }
   return 0;
 }
@@ -118,15 +118,21 @@ double ReliableTexture(const Ground& ground) {
   if (top == ground.layers.end()) return 0;
   const TextureBins bins = CoverageByTexture(top->second);
   const int num_bins = static_cast<int>(bins.size());
-  const double all = Sum(bins, 0, num_bins).all;
-  const int quartile = UpperQuartile(bins);
-  const double usual = Sum(bins, quartile, num_bins).Share();
-  int reliable = quartile;
-  for (; reliable > 0; --reliable) {
-    const Bin about = Sum(bins, reliable - 1 - kTextureReach, reliable + kTextureReach);
-    if (about.all > kFew * all && about.Share() < kAsUsual * usual) break;
+  const double few = kFew * Sum(bins, 0, num_bins).all;
+  const auto about = [&](int t) { return Sum(bins, t - kTextureReach, t + kTextureReach + 1); };
+  const int median = MedianCovered(bins);
+  double best = 0;
+  for (int t = 0; t < num_bins; ++t) {
+    if (about(t).all > few) best = std::max(best, about(t).Share());
   }
-  return std::max<double>(reliable, kOfQuartile * quartile);
+  const auto is_reliable = [&](int t) {
+    return about(t).all <= few || about(t).Share() >= kAsGood * best;
+  };
+  int reliable = 0;
+  for (int t = 0; t <= median + kTextureReach; ++t) {
+    if (!is_reliable(t)) reliable = t + 1;
+  }
+  return std::max<double>(reliable, kOfMedian * median);
 }
 
 void TellWhatLacksTexture(Ground* ground) {

@@ -17,9 +17,10 @@ double LimitOfSight(double survey_gsd, const Ground& ground);
 void LeaveOutBackground(double survey_gsd, Ground* ground);
 
 // Texture, as in PictureFacts, from which on this survey's places were matched reliably: of what two
-// pictures see with that and more up to the upper quartile of what is covered, nine tenths as much is
-// covered as above it. A quarter of that quartile at the least: of what hardly any place shows
-// nothing is known. 0 where the pictures were not looked at. Of the top layer.
+// pictures see with less, less than nine tenths as much is covered as of the texture that was
+// matched best. Not above the median of what is covered, for most of what is can be matched; a
+// quarter of it at the least, for of what hardly any place shows nothing is known. 0 where the
+// pictures were not looked at. Of the top layer.
 double ReliableTexture(const Ground& ground);
 
 // Where two good pictures see a place from two sides, and it is missing all the same: kNoTexture
