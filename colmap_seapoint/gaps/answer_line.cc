@@ -46,15 +46,16 @@ const char* CauseText(GapCause cause) {
 std::string CompletenessLine(const CompletenessResult& result, const SparseModel& model,
                              const GapPlaces& places) {
   const CoverageAt& at = result.coverage[0];
-  std::string line = Formatted("%.1f %% (+- %.1f) of the survey is covered at ",
-                               100 * at.share, 100 * result.share_tolerance) +
+  std::string line = Formatted("%.1f %% (+- %.1f) of the survey is covered at ", 100 * at.share,
+                               100 * result.share_tolerance) +
                      SpacingText(result.spacing, places) + " spacing; ";
   if (result.gaps.empty()) return line + "no gap to go back to";
-  const Gap& largest = *std::max_element(
-      result.gaps.begin(), result.gaps.end(),
-      [](const Gap& a, const Gap& b) { return a.region.area < b.region.area; });
+  const Gap& largest =
+      *std::max_element(result.gaps.begin(), result.gaps.end(),
+                        [](const Gap& a, const Gap& b) { return a.region.area < b.region.area; });
   const std::string unit = places.Unit() == "m" ? "m2" : "square units";
-  line += std::to_string(result.gaps.size()) + (result.gaps.size() == 1 ? " gap, " : " gaps, the largest ") +
+  line += std::to_string(result.gaps.size()) +
+          (result.gaps.size() == 1 ? " gap, " : " gaps, the largest ") +
           Formatted("%.2g ", largest.region.area) + unit;
   if (!largest.pictures.empty()) {
     line += " near " + model.images[static_cast<size_t>(largest.pictures[0])].name;

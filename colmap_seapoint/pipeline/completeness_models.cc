@@ -30,8 +30,7 @@ void from_json(const nlohmann::ordered_json& json, Assessment& assessment) {
 }
 
 CompletenessReporterOptions ReporterOptions(const AutomaticReconstructorOptions& options,
-                                            const Workspace& workspace,
-                                            const ModelSummary& model) {
+                                            const Workspace& workspace, const ModelSummary& model) {
   CompletenessReporterOptions reporter;
   reporter.image_path = workspace.images.string();
   reporter.input_path = model.path.string();

@@ -12,8 +12,8 @@
 
 namespace colmap_seapoint {
 
-// WORKSPACE/report/completeness/<k> for every model with a cloud; reports that are there already, of
-// the same inputs, are kept. The answers come into the models' summaries. A model that cannot be
+// WORKSPACE/report/completeness/<k> for every model with a cloud; reports that are there already,
+// of the same inputs, are kept. The answers come into the models' summaries. A model that cannot be
 // judged ends nothing: its answer says why. With --completeness 0 nothing is done, and what earlier
 // runs left is removed.
 void ReportCompletenessOfModels(const AutomaticReconstructorOptions& options,

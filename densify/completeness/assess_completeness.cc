@@ -14,8 +14,8 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr size_t kNumNearest = 5;
-// The areas that gaps are made of: (10 wanted spacings)^2 and more, and a square of 4 spacings fits into
-// them.
+// The areas that gaps are made of: (10 wanted spacings)^2 and more, and a square of 4 spacings fits
+// into them.
 constexpr double kMinGapSpacings = 10;
 constexpr int kMinGapCells = 2;
 // Radius of the disc that closes the outline, in widths of a picture.
@@ -223,8 +223,8 @@ CompletenessResult AssessCompleteness(const CompletenessInput& input,
   const std::vector<DepthCells> depths = DrawDepths(ground, views, num_threads);
   result.lost_runs = FindLostRuns(NamesOf(model), input.lost);
   const LostSight lost(result.lost_runs, views, plan.across);
-  const SightContext context{
-      &views, &depths, &input.facts, &lost, ground.cell_side, options.min_parallax_deg};
+  const SightContext context{&views, &depths,          &input.facts,
+                             &lost,  ground.cell_side, options.min_parallax_deg};
   result.records = StartRecords(context, num_threads);
 
   const AskedArea* asked = input.asked.Empty() ? nullptr : &input.asked;

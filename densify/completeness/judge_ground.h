@@ -24,8 +24,8 @@ struct JudgeOptions {
 };
 
 // Fills cause, is_expected and what the pictures tell; of cells that were covered before, of every
-// sixteenth. Where no picture sees a cell nothing is said yet (outline.h). The same for any number of threads. About a microsecond an uncovered cell and
-// picture that may see it.
+// sixteenth. Where no picture sees a cell nothing is said yet (outline.h). The same for any number
+// of threads. About a microsecond an uncovered cell and picture that may see it.
 void JudgeGround(const SightContext& context, const JudgeOptions& options, int num_threads,
                  Ground* ground);
 

@@ -50,8 +50,7 @@ TEST_F(Reconstructor, RunsTheWholeChain) {
        {"database.db", "sparse/0/images.bin", "dense/0/fused.ply", "dense/0/fused.ply.vis",
         "dense/0/pairs.csv", "dense/0/run.json", "report/summary.txt", "report/run.json",
         "report/completeness/0/completeness.json", "report/completeness/0/gaps.geojson",
-        "report/completeness/0/map.png",
-        "report/mapper_1_thinned.log"}) {
+        "report/completeness/0/map.png", "report/mapper_1_thinned.log"}) {
     EXPECT_TRUE(fs::exists(Workspace() / file)) << file;
   }
   EXPECT_FALSE(fs::exists(Workspace() / "sparse.tmp"));

@@ -16,7 +16,6 @@ struct PassRegions {
 // half a picture of that one's cells; the smallest (a hundredth of a picture and less) to a larger
 // one of any cause, since the pass over that one photographs it too. What is then still smaller
 // than a hundredth of a picture is left out. Largest first in every layer, layers in their order.
-PassRegions MergeIntoPasses(std::vector<GapRegion> regions, const PassPlan& plan,
-                            double cell_side);
+PassRegions MergeIntoPasses(std::vector<GapRegion> regions, const PassPlan& plan, double cell_side);
 
 }  // namespace colmap_seapoint

@@ -71,8 +71,7 @@ std::vector<Sight> SightsOf(const SightContext& context, const std::vector<int>&
     const double across = distance / view.camera->MeanFocal();
     // A cell of depths holds a piece of a tilted surface from its nearest to its farthest end.
     const double within_cell = kDepthCell * across * std::sqrt(1 - cosine * cosine) / cosine;
-    const double slack =
-        kHiddenShare * depth + kHiddenCells * context.cell_side + within_cell;
+    const double slack = kHiddenShare * depth + kHiddenCells * context.cell_side + within_cell;
     sight.kind = KindOf(context, image_idx, *pixel, depth, slack, &sight.texture);
     sight.gsd = across / std::sqrt(cosine);
     sight.toward = to_camera / distance;

@@ -58,9 +58,9 @@ bool IsSeenFromTwoSides(const std::vector<Sight>& sights, double min_parallax_de
 // measured in blurred pictures is not to be trusted.
 bool NeedsBadPictures(const SightContext& context, const std::vector<Sight>& sights);
 
-// The best cause: the first thing that would have had to be otherwise. kViewsDisagree where two good
-// pictures see it from two sides, whatever they show (survey_limits.h). kNone when no picture holds
-// the place, not even a hidden, masked or lost one.
+// The best cause: the first thing that would have had to be otherwise. kViewsDisagree where two
+// good pictures see it from two sides, whatever they show (survey_limits.h). kNone when no picture
+// holds the place, not even a hidden, masked or lost one.
 GapCause CauseOf(const SightContext& context, const std::vector<Sight>& sights,
                  const Eigen::Vector3d& place);
 

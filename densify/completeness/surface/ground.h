@@ -28,10 +28,10 @@ struct GroundCell {
   float area = 0;      // units^2 of surface, along its slope
   uint16_t count = 0;  // points of enough confidence
   bool is_covered = false;
-  bool is_thin = false;      // not covered, yet with too many points to call it a gap
+  bool is_thin = false;       // not covered, yet with too many points to call it a gap
   bool is_from_afar = false;  // covered by what farther pictures than usual can give
   bool has_pair = false;      // two pictures see it from two sides
-  bool is_expected = false;  // part of what the survey should have covered
+  bool is_expected = false;   // part of what the survey should have covered
   GapCause cause = GapCause::kNone;
   // Of a sample of the covered cells: usable pictures that see it, and the largest angle between
   // two of them, up to 180 degrees.

@@ -79,7 +79,8 @@ class TiledGrid {
   }
   template <typename Visitor>
   void ForEach(const Visitor& visit) const {
-    const_cast<TiledGrid*>(this)->ForEach([&](int x, int y, const Cell& cell) { visit(x, y, cell); });
+    const_cast<TiledGrid*>(this)->ForEach(
+        [&](int x, int y, const Cell& cell) { visit(x, y, cell); });
   }
 
  private:

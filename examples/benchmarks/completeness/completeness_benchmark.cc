@@ -270,8 +270,8 @@ int Score(const std::vector<std::string>& arguments) {
                                   : ReadPlantedGaps(fs::path(planted_path) / "planted.json");
   std::vector<Eigen::Vector3f> points;
   for (const CloudPoint& p : ReadCloud(cloud_path)) points.push_back(p.xyz);
-  const GapTruth gaps =
-      MeasureGapTruth(truth, planted, reported.spacing, reported.spacing / reported.gsd, points, -1);
+  const GapTruth gaps = MeasureGapTruth(truth, planted, reported.spacing,
+                                        reported.spacing / reported.gsd, points, -1);
   const std::vector<int> owner = OwnersOf(gaps, reported);
   if (!picture_path.empty()) DrawScore(gaps, owner, reported, picture_path);
   const Tallies tallies = TallyCells(gaps, owner, reported);

@@ -19,8 +19,8 @@ const double kMinParallax = std::cos(2 * 3.14159265358979323846 / 180);
 
 enum class Kind { kGood, kBlurred, kLost, kRemoved, kHidden };
 
-// What no two good pictures see from two sides, and none from nearer than so many times the survey's
-// own GSD, is background.
+// What no two good pictures see from two sides, and none from nearer than so many times the
+// survey's own GSD, is background.
 constexpr double kFarForOne = 2;
 // Where of what two see less than half as much is covered as at the survey's own GSD and nearer.
 constexpr double kFar = 1.1 * 1.1 * 1.1 * 1.1, kWindow = 1.1 * 1.1 * 1.1, kMostlyNothing = 0.5;
@@ -143,8 +143,7 @@ double SurveyGsd(const SurveyTruth& truth, const CellTruth& cells, const GapTrut
   for (int j = 0; j < result.ny; j += kScaleStep) {
     for (int i = 0; i < result.nx; i += kScaleStep) {
       const Eigen::Vector2d place = result.Place(i, j);
-      const double gsd =
-          BestPairGsd(cells.SeenAt(truth.surface.GroundAt(place.x(), place.y())));
+      const double gsd = BestPairGsd(cells.SeenAt(truth.surface.GroundAt(place.x(), place.y())));
       if (gsd == kBeyond) continue;
       const double weight = AreaOf(truth, result, place) / (gsd * gsd);
       weights[gsd] += weight;
