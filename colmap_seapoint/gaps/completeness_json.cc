@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
@@ -105,6 +104,7 @@ std::string CompletenessJson(const CompletenessResult& result, const SparseModel
                {"gsd", result.gsd},
                {"coverage", CoverageJson(result)},
                {"missing_area", MissingJson(result)},
+               {"unlisted_area", result.unlisted_area},
                {"points_per_area", result.points_per_area},
                {"mean_views", result.mean_views},
                {"median_parallax_deg", result.median_parallax_deg},
@@ -126,36 +126,6 @@ std::string CompletenessJson(const CompletenessResult& result, const SparseModel
   }
   json["pictures"] = std::move(pictures);
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-std::string CompletenessLine(const CompletenessResult& result, const GapPlaces& places) {
-  const std::string unit = places.Unit() == "m" ? "m2" : "square units";
-  char text[160];
-  std::snprintf(text, sizeof(text), "%.1f +- %.1f %% of %.4g %s covered, a point every %.3g %s; ",
-                100 * result.coverage[0].share, 100 * result.share_tolerance, result.expected_area,
-                unit.c_str(), result.spacing, places.Unit().c_str());
-  std::string line = text;
-  if (result.gaps.empty()) return line + "no gap to go back to\n";
-  double area = 0;
-  std::array<double, kNumGapCauses> by_cause = {};
-  for (const Gap& gap : result.gaps) {
-    area += gap.region.area;
-    by_cause[static_cast<size_t>(gap.region.cause)] += gap.region.area;
-  }
-  std::snprintf(text, sizeof(text), "%zu gaps of %.4g %s in all (", result.gaps.size(), area,
-                unit.c_str());
-  line += text;
-  bool is_first = true;
-  for (size_t c = 1; c < by_cause.size(); ++c) {
-    if (by_cause[c] <= 0) continue;
-    std::snprintf(text, sizeof(text), "%s%s %.3g", is_first ? "" : ", ",
-                  GapCauseName(static_cast<GapCause>(c)), by_cause[c]);
-    line += text;
-    is_first = false;
-  }
-  std::snprintf(text, sizeof(text), "); a route of %.4g %s closes them\n", result.route_length,
-                places.Unit().c_str());
-  return line + text;
 }
 
 FormerReport ReadFormerReport(const std::filesystem::path& path) {

@@ -13,9 +13,6 @@ namespace colmap_seapoint {
 std::string CompletenessJson(const CompletenessResult& result, const SparseModel& model,
                              const GapPlaces& places);
 
-// One line: the share covered, the area that is missing and why, the gaps.
-std::string CompletenessLine(const CompletenessResult& result, const GapPlaces& places);
-
 struct FormerReport {
   std::vector<FormerOutline> gaps;
   int last_id = 0;

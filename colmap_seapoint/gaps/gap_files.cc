@@ -29,14 +29,18 @@ Json Line(const GapPlaces& places, const std::vector<Eigen::Vector3d>& corners) 
   return line;
 }
 
-Json Polygon(const GapPlaces& places, const Gap& gap) {
-  Json rings = Json::array();
-  for (const auto& corners : gap.outline) {
-    Json ring = Line(places, corners);
+// A Polygon where the gap is in one piece, else a MultiPolygon.
+Json Polygons(const GapPlaces& places, const Gap& gap) {
+  Json polygons = Json::array();
+  for (size_t i = 0; i < gap.outline.size(); ++i) {
+    Json ring = Line(places, gap.outline[i]);
     ring.push_back(ring.front());
-    rings.push_back(std::move(ring));
+    const bool is_outer = SignedArea(gap.region.rings[i]) > 0;
+    if (is_outer || polygons.empty()) polygons.push_back(Json::array());
+    polygons.back().push_back(std::move(ring));
   }
-  return {{"type", "Polygon"}, {"coordinates", std::move(rings)}};
+  if (polygons.size() == 1) return {{"type", "Polygon"}, {"coordinates", polygons[0]}};
+  return {{"type", "MultiPolygon"}, {"coordinates", std::move(polygons)}};
 }
 
 Json PassProperties(const ClosingPass& pass) {
@@ -142,7 +146,7 @@ std::string GapsGeoJson(const CompletenessResult& result, const SparseModel& mod
   for (size_t i = 0; i < result.gaps.size(); ++i) {
     const Gap& gap = result.gaps[i];
     features.push_back(
-        Feature(Polygon(places, gap), GapProperties(gap, model, places, static_cast<int>(i) + 1)));
+        Feature(Polygons(places, gap), GapProperties(gap, model, places, static_cast<int>(i) + 1)));
   }
   for (const Gap& gap : result.gaps) {
     Json properties = {{"kind", "pass"}, {"gap", gap.id}};

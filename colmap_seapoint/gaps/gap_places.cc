@@ -1,5 +1,7 @@
 #include "colmap_seapoint/gaps/gap_places.h"
 
+#include <optional>
+
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/geodesy.h"
 
@@ -16,7 +18,7 @@ bool IsProjected(const ModelUnits& units) {
 
 }  // namespace
 
-GapPlaces::GapPlaces(const ModelUnits& units, const MapFrame& frame)
+GapPlaces::GapPlaces(const ModelUnits& units, const PlanFrame& frame)
     : units_(units), frame_(frame) {
   if (IsProjected(units)) projection_ = std::make_unique<MapProjection>(units.crs);
   is_geographic_ = projection_ != nullptr || IsEastNorthUp(units);
@@ -40,17 +42,26 @@ std::string GapPlaces::Description() const {
   return unit + ", the map's frame (map_from_model turns the model into it), not WGS84";
 }
 
-Eigen::Vector2d AreaCorner(const ModelUnits& units, const Eigen::Vector2d& corner) {
-  const GeoPosition position = {corner.y(), corner.x(), 0};
-  if (!IsEastNorthUp(units) && !IsProjected(units)) return corner - units.offset.head<2>();
-  if (!IsLegal(position)) {
-    throw Error("--area", "a corner is no longitude and latitude, as the model's place needs",
-                "save the polygon in WGS84 (EPSG:4326)");
+AskedArea AreaInPlan(const ModelUnits& units, const std::vector<Ring>& rings) {
+  std::optional<MapProjection> projection;
+  if (IsProjected(units)) projection.emplace(units.crs);
+  const auto in_plan = [&](const Eigen::Vector2d& corner) -> Eigen::Vector2d {
+    if (!IsEastNorthUp(units) && !projection) return corner - units.offset.head<2>();
+    const GeoPosition position = {corner.y(), corner.x(), 0};
+    if (!IsLegal(position)) {
+      throw Error("--area", "a corner is no longitude and latitude, as the model's place needs",
+                  "save the polygon in WGS84 (EPSG:4326)");
+    }
+    const Eigen::Vector3d place = projection ? projection->FromGeographic(position)
+                                             : LocalEastNorthUp(position, *units.origin);
+    return (place - units.offset).head<2>();
+  };
+  AskedArea area;
+  for (const Ring& ring : rings) {
+    Ring& corners = area.rings.emplace_back();
+    for (const Eigen::Vector2d& corner : ring) corners.push_back(in_plan(corner));
   }
-  if (IsEastNorthUp(units)) {
-    return (LocalEastNorthUp(position, *units.origin) - units.offset).head<2>();
-  }
-  return (MapProjection(units.crs).FromGeographic(position) - units.offset).head<2>();
+  return area;
 }
 
 }  // namespace colmap_seapoint

@@ -4,10 +4,12 @@
 #include <Eigen/Core>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "colmap_seapoint/io/files/map_projection.h"
 #include "colmap_seapoint/io/files/model_units.h"
-#include "densify/completeness/surface/map_frame.h"
+#include "densify/completeness/surface/asked_area.h"
+#include "densify/completeness/surface/plan_frame.h"
 
 namespace colmap_seapoint {
 
@@ -17,7 +19,7 @@ namespace colmap_seapoint {
 class GapPlaces {
  public:
   // Throws Error when PROJ does not know the units' CRS.
-  GapPlaces(const ModelUnits& units, const MapFrame& frame);
+  GapPlaces(const ModelUnits& units, const PlanFrame& frame);
   Eigen::Vector3d Write(const Eigen::Vector3d& world) const;
   bool IsGeographic() const { return is_geographic_; }
   std::string Description() const;  // a sentence for who reads the file
@@ -25,14 +27,13 @@ class GapPlaces {
 
  private:
   ModelUnits units_;
-  MapFrame frame_;
+  PlanFrame frame_;
   bool is_geographic_ = false;
   std::unique_ptr<MapProjection> projection_;
 };
 
-// Of a polygon as ReadAreaGeoJson gives it: the place in the plan of the map. Geographic where the
-// model is; throws Error for corners that are no longitude and latitude there. The map must be the
-// world.
-Eigen::Vector2d AreaCorner(const ModelUnits& units, const Eigen::Vector2d& corner);
+// Polygons as ReadAreaGeoJson gives them, in the plan of the map, which must be the world. They are
+// geographic where the model is; throws Error for corners that are no longitude and latitude there.
+AskedArea AreaInPlan(const ModelUnits& units, const std::vector<Ring>& rings);
 
 }  // namespace colmap_seapoint

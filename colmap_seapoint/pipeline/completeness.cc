@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <vector>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/gaps/answer_line.h"
 #include "colmap_seapoint/gaps/completeness_json.h"
 #include "colmap_seapoint/gaps/gap_files.h"
 #include "colmap_seapoint/gaps/gap_map.h"
@@ -16,11 +18,11 @@
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/model_units.h"
-#include "colmap_seapoint/io/files/run_report.h"
 #include "colmap_seapoint/io/gis/area_geojson.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "colmap_seapoint/io/image/picture_masks.h"
 #include "colmap_seapoint/io/outputs/output_folder.h"
+#include "colmap_seapoint/orthomosaic/ground/map_frame.h"
 #include "colmap_seapoint/pictures/picture_scale.h"
 #include "colmap_seapoint/workspace/output_paths.h"
 #include "densify/completeness/assess_completeness.h"
@@ -50,16 +52,36 @@ SparseModel ReadModel(const CompletenessReporterOptions& options) {
 }
 
 AskedArea ReadArea(const CompletenessReporterOptions& options, const ModelUnits& units) {
-  AskedArea area;
-  if (options.area.empty()) return area;
-  for (const auto& corners : ReadAreaGeoJson(options.area, "--area")) {
-    Ring& ring = area.rings.emplace_back();
-    for (const Eigen::Vector2d& corner : corners) ring.push_back(AreaCorner(units, corner));
+  if (options.area.empty()) return {};
+  AskedArea area = AreaInPlan(units, ReadAreaGeoJson(options.area, "--area"));
+  for (const Ring& ring : area.rings) {
     if (!CrossesItself(ring)) continue;
     throw Error("--area " + options.area, "a polygon crosses itself",
                 "mend it (in QGIS: Fix geometries)");
   }
   return area;
+}
+
+// The plan that orthomosaics are drawn on, but turned about the world's own origin; the world
+// itself where its z points up within 20 degrees. An asked area is drawn from above.
+PlanFrame FindPlan(const CompletenessReporterOptions& options, const SparseModel& model,
+                   const std::optional<ModelUnits>& units,
+                   const std::vector<Eigen::Vector3d>& sample) {
+  constexpr double kNearUp = 0.94;
+  MapFrameOptions map;
+  const bool knows_up = units && units->is_metric && units->frame != "model";
+  if (!options.area.empty() && knows_up) map.plane = MapPlane::kModel;
+  PlanFrame plan;
+  const Eigen::Matrix3d rotation =
+      FindMapFrame(map, model, sample, units).map_from_cloud.rotation.toRotationMatrix();
+  if (rotation(2, 2) > kNearUp) return plan;
+  if (!options.area.empty()) {
+    throw Error("--area " + options.area,
+                "the model's z does not point up from its ground, so that its x and y are no map",
+                "bring the model into metres first (model_scaler with positions), or leave --area");
+  }
+  plan.map_from_world = rotation;
+  return plan;
 }
 
 // Names of pictures below image_path that are in no model.
@@ -125,8 +147,28 @@ void ReadPoints(const std::string& path, const std::function<void(const Confiden
   }
 }
 
+void CheckResult(const CompletenessReporterOptions& options, const CompletenessResult& result) {
+  if (result.belonging_share < kMinBelonging) {
+    throw Error(
+        options.cloud_path,
+        "only " + std::to_string(std::lround(100 * result.belonging_share)) +
+            " % of the cloud lie in any picture of " + options.input_path,
+        "give the cloud that was made from this model (of a scaled model, the scaled cloud)");
+  }
+  if (result.is_area_too_large) {
+    throw Error("--area " + options.area, "is too large to be kept in memory at this spacing",
+                "check its coordinates; ask for less, or raise --Completeness.spacing");
+  }
+  const double unseen = result.missing_area[static_cast<size_t>(GapCause::kNeverImaged)];
+  if (!options.area.empty() && unseen >= (1 - 1e-9) * result.expected_area) {
+    throw Error("--area " + options.area, "no picture shows anything of it",
+                "check its coordinates: longitude and latitude where the model is georeferenced, "
+                "else the model's x and y");
+  }
+}
+
 CompletenessResult Assess(const CompletenessReporterOptions& options, const SparseModel& model,
-                          const ModelUnits& units, RunReport* report) {
+                          const std::optional<ModelUnits>& units, RunReport* report) {
   CompletenessInput input;
   input.model = &model;
   input.num_points = CloudReader(options.cloud_path).NumPoints();
@@ -135,7 +177,8 @@ CompletenessResult Assess(const CompletenessReporterOptions& options, const Spar
   }
   report->points = static_cast<int64_t>(input.num_points);
   input.for_each_point = [&](const auto& take) { ReadPoints(options.cloud_path, take); };
-  input.asked = ReadArea(options, units);
+  input.asked = ReadArea(options, units.value_or(ModelUnits()));
+  input.frame_of = [&](const auto& sample) { return FindPlan(options, model, units, sample); };
   input.lost = LostPictures(options, model);
   FormerReport former = ReadFormerReport(fs::path(options.output_path) / "completeness.json");
   input.former = std::move(former.gaps);
@@ -143,11 +186,8 @@ CompletenessResult Assess(const CompletenessReporterOptions& options, const Spar
   input.facts = MeasurePictures(options, model, report);
   CompletenessResult result =
       AssessCompleteness(input, options.completeness, options.run.num_threads);
-  if (result.belonging_share >= kMinBelonging) return result;
-  throw Error(options.cloud_path,
-              "only " + std::to_string(std::lround(100 * result.belonging_share)) +
-                  " % of the cloud lie in any picture of " + options.input_path,
-              "give the cloud that was made from this model (of a scaled model, the scaled cloud)");
+  CheckResult(options, result);
+  return result;
 }
 
 // Of the layers with gaps, but for the top, which is always drawn.
@@ -164,7 +204,16 @@ std::string MapName(const LayerKey& layer) {
   return name;
 }
 
+// Of layers that an earlier run has found gaps in.
+void RemoveFormerMaps(OutputFolder* folder) {
+  for (const fs::path& file : FilesOfOurs(folder->Path())) {
+    const std::string name = file.filename().string();
+    if (name.rfind("map_", 0) == 0) folder->Remove(name);
+  }
+}
+
 void WriteMaps(const CompletenessResult& result, const std::string& unit, OutputFolder* folder) {
+  RemoveFormerMaps(folder);
   const ColorImage map = DrawGapMap(result, {Side::kTop, 0}, unit);
   if (!map.Empty()) WriteImage(folder->Path() / "map.png", map);
   for (const LayerKey& layer : LayersWithGaps(result)) {
@@ -196,31 +245,36 @@ void CompletenessReporterOptions::Bind(OptionTable* table) {
   table->MarkOutput("output_path");
 }
 
-CommandResult RunCompletenessReporter(const CompletenessReporterOptions& options) {
+CompletenessReport ReportCompleteness(const CompletenessReporterOptions& options) {
   Validate(options);
-  RunReport report = StartReport("completeness_reporter", options, options.run);
+  CompletenessReport done;
+  RunReport& report = done.run = StartReport("completeness_reporter", options, options.run);
   OutputFolder folder(options.output_path, "--output_path");
   folder.Claim({"completeness.json", "gaps.geojson", "gaps.csv", "map.png", "run.json"});
-  std::string answer;
   {
     const StageTimer timer(&report, "completeness_reporter");
-    const ModelUnits units = ReadModelUnits(options.input_path).value_or(ModelUnits());
+    const std::optional<ModelUnits> units = ReadModelUnits(options.input_path);
     report.units = UnitsWord(units);
     const SparseModel model = ReadModel(options);
     report.images_in = static_cast<int64_t>(model.images.size());
     const CompletenessResult result = Assess(options, model, units, &report);
     report.images_used = report.images_in - static_cast<int64_t>(report.left_out.size());
-    const GapPlaces places(units, result.ground.frame);
+    const GapPlaces places(units.value_or(ModelUnits()), result.ground.frame);
     const fs::path& output = folder.Path();
     WriteTextFile(output / "gaps.geojson", GapsGeoJson(result, model, places));
     WriteTextFile(output / "gaps.csv", GapsCsv(result, model, places));
     WriteMaps(result, places.Unit(), &folder);
     WriteTextFile(output / "completeness.json", CompletenessJson(result, model, places));
-    answer = CompletenessLine(result, places);
+    done.answer = CompletenessLine(result, model, places);
   }
   WriteRunReport(folder.Path() / "run.json", report);
-  CommandResult command = ResultOf(report);
-  command.text = answer;
+  return done;
+}
+
+CommandResult RunCompletenessReporter(const CompletenessReporterOptions& options) {
+  const CompletenessReport done = ReportCompleteness(options);
+  CommandResult command = ResultOf(done.run);
+  command.text = done.answer + "\n";
   return command;
 }
 

@@ -6,6 +6,7 @@
 
 #include "colmap_seapoint/base/options.h"
 #include "colmap_seapoint/base/run_options.h"
+#include "colmap_seapoint/io/files/run_report.h"
 #include "densify/completeness/completeness_options.h"
 
 namespace colmap_seapoint {
@@ -23,9 +24,17 @@ struct CompletenessReporterOptions {
   void Bind(OptionTable* table);
 };
 
+struct CompletenessReport {
+  RunReport run;
+  std::string answer;  // one line
+};
+
 // Writes completeness.json, gaps.geojson, gaps.csv, map.png (map_<layer>.png of other layers with
-// gaps) and run.json; the answer in one line on stdout. Incomplete when pictures of the model
-// cannot be read.
+// gaps) and run.json. Pictures of the model that cannot be read are left out. Throws Error when
+// cloud, model, pictures and area do not belong together.
+CompletenessReport ReportCompleteness(const CompletenessReporterOptions& options);
+
+// The same; the answer on stdout.
 CommandResult RunCompletenessReporter(const CompletenessReporterOptions& options);
 
 }  // namespace colmap_seapoint

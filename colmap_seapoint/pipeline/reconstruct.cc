@@ -25,6 +25,7 @@
 #include "colmap_seapoint/pairing/tilted_pairs.h"
 #include "colmap_seapoint/pictures/duplicates.h"
 #include "colmap_seapoint/pictures/exif_positions.h"
+#include "colmap_seapoint/pipeline/completeness_models.h"
 #include "colmap_seapoint/pipeline/densify_models.h"
 #include "colmap_seapoint/pipeline/extract.h"
 #include "colmap_seapoint/pipeline/intake/take_in.h"
@@ -393,6 +394,7 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& giv
   ScaleModels(options, pictures, workspace, mapping.fingerprint, &state, &models, &report);
   DensifyModels(options, workspace, mapping.fingerprint, &database, &state, &models, &report);
   MakeMaps(options, workspace, mapping.fingerprint, &state, &models, &report);
+  ReportCompletenessOfModels(options, workspace, mapping.fingerprint, &state, &models, &report);
   RememberJob(&progress);
   return WriteReport(workspace, models, report);
 }

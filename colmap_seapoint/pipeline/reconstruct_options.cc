@@ -55,6 +55,11 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
   matching.Bind(table);
   densification.Bind(table);
   map.Bind(table, "Orthomosaic.");
+  table->Add("completeness", &report_completeness,
+             "at the end, report what the clouds cover and where to go back to, in "
+             "report/completeness/",
+             "ours");
+  completeness.Bind(table);
   run.Bind(table);
   table->MarkOutput("workspace_path");
 }

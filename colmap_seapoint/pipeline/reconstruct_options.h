@@ -11,6 +11,7 @@
 #include "colmap_seapoint/pairing/pair_options.h"
 #include "colmap_seapoint/pictures/image_reader_options.h"
 #include "colmap_seapoint/pipeline/orthomosaic/map_settings.h"
+#include "densify/completeness/completeness_options.h"
 #include "densify/partial_densification_options.h"
 #include "feature/detector/seapoint_detector.h"
 #include "feature/matching/matching_options.h"
@@ -41,6 +42,8 @@ struct AutomaticReconstructorOptions {
   PartialDensificationOptions densification;
   bool makes_map = true;
   MapSettings map;
+  bool report_completeness = true;
+  CompletenessOptions completeness;
   RunOptions run;
 
   void Bind(OptionTable* table);

@@ -21,6 +21,7 @@ std::string SummaryText(const std::vector<ModelSummary>& models, const RunReport
     if (!model.map.empty()) {
       out << "  map in " << model.map_path.string() << ": " << model.map << "\n";
     }
+    if (!model.completeness.empty()) out << "  completeness: " << model.completeness << "\n";
   }
   for (const RunReport::LeftOut& left_out : report.left_out) {
     out << "left out: " << left_out.name << ": " << left_out.reason << "\n";

@@ -19,6 +19,7 @@ struct ModelSummary {
   std::string units = "units arbitrary";  // or metres, and the frame
   std::string units_word = "arbitrary";
   std::string scaling_fingerprint;  // of all that the units depend on; empty: not scaled
+  std::string completeness;         // one line: what the cloud covers; empty: not asked for
   std::string scaling;              // one line: how the scale came about; empty: not scaled
   std::filesystem::path map_path;   // folder; empty: no map
   std::string map;                  // one line: what it is like

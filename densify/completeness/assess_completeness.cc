@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "densify/completeness/gaps/merge_gaps.h"
 #include "densify/completeness/judge_ground.h"
 #include "densify/completeness/outline.h"
+#include "densify/completeness/survey_limits.h"
 #include "densify/completeness/survey_scale.h"
 #include "densify/match/cell_grid.h"
 
@@ -12,8 +14,8 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr size_t kNumNearest = 5;
-// The gaps that are listed: (10 wanted spacings)^2 and more, and a square of 4 spacings fits into
-// them.
+// The areas that gaps are made of: (10 wanted spacings)^2 and more, and a square of 4 spacings fits
+// into them.
 constexpr double kMinGapSpacings = 10;
 constexpr int kMinGapCells = 2;
 // Radius of the disc that closes the outline, in widths of a picture.
@@ -77,7 +79,7 @@ void Measure(CompletenessResult* result) {
   int64_t num_sampled = 0;
   std::vector<double> parallax;
   for (auto& [key, layer] : result->ground.layers) {
-    layer.cells.ForEach([&](int, int, const GroundCell& cell) {
+    layer.cells.ForEach([&](int x, int y, const GroundCell& cell) {
       if (!cell.is_expected) return;
       result->expected_area += cell.area;
       if (!cell.is_covered) {
@@ -87,7 +89,7 @@ void Measure(CompletenessResult* result) {
       }
       covered += cell.area;
       points += cell.count;
-      if (cell.num_views == 0) return;
+      if (cell.num_views == 0 || !IsSampledCell(x, y)) return;
       views += cell.num_views;
       ++num_sampled;
       parallax.push_back(cell.parallax_deg);
@@ -140,7 +142,7 @@ Eigen::Vector3d CentroidOf(const Ground& ground, const GapRegion& region) {
 }
 
 std::vector<FormerGap> FormerGaps(const std::vector<FormerOutline>& outlines,
-                                  const MapFrame& frame) {
+                                  const PlanFrame& frame) {
   std::vector<FormerGap> gaps;
   for (const FormerOutline& outline : outlines) {
     const Eigen::Matrix3d layer_from_world = SideFromMap(outline.layer.side) * frame.map_from_world;
@@ -157,7 +159,10 @@ std::vector<FormerGap> FormerGaps(const std::vector<FormerOutline>& outlines,
 void FindGaps(const CompletenessInput& input, const std::vector<SurveyView>& views,
               const PassPlan& plan, CompletenessResult* result) {
   const double min_area = std::pow(kMinGapSpacings * result->spacing, 2);
-  std::vector<GapRegion> regions = FindGapRegions(kMinGapCells, min_area, &result->ground);
+  PassRegions merged = MergeIntoPasses(FindGapRegions(kMinGapCells, min_area, &result->ground),
+                                       plan, result->ground.cell_side);
+  result->unlisted_area = merged.unlisted_area;
+  std::vector<GapRegion>& regions = merged.regions;
   result->last_id = input.last_id;
   std::vector<GapPlace> places;
   for (const GapRegion& region : regions) {
@@ -198,8 +203,8 @@ CompletenessResult AssessCompleteness(const CompletenessInput& input,
   CompletenessResult result;
   const SparseModel& model = *input.model;
   const std::vector<SurveyView> views = MakeViews(model, VisualRange(model));
-  const CloudSample sample = SampleCloud(input);
-  const SurveyScale scale = MeasureScale(views, sample);
+  const std::vector<SurfacePoint> sample = SampleCloud(input);
+  const SurveyScale scale = MeasureScale(views, sample, options.min_parallax_deg);
   result.belonging_share = scale.seen_share;
   if (scale.seen_share < kMinBelonging) return result;
 
@@ -207,7 +212,9 @@ CompletenessResult AssessCompleteness(const CompletenessInput& input,
   result.gsd = scale.gsd;
   result.spacing = options.spacing > 0 ? options.spacing : scale.gsd * step;
   Ground& ground = result.ground;
-  ground.frame = FitMapFrame(sample.points, CentersOf(views));
+  result.is_area_too_large = input.asked.IsTooLarge(kCellSpacings * result.spacing);
+  if (result.is_area_too_large) return result;
+  ground.frame = input.frame_of ? input.frame_of(PlacesOf(sample)) : PlanFrame();
   ground.cell_side = kCellSpacings * result.spacing;
   CountPoints(input, options.min_confidence, &ground);
   FinishPoints(num_threads, &ground);
@@ -216,14 +223,15 @@ CompletenessResult AssessCompleteness(const CompletenessInput& input,
   const std::vector<DepthCells> depths = DrawDepths(ground, views, num_threads);
   result.lost_runs = FindLostRuns(NamesOf(model), input.lost);
   const LostSight lost(result.lost_runs, views, plan.across);
-  SightContext context{
-      &views, &depths, &input.facts, &lost, ground.cell_side, options.min_parallax_deg, 0};
+  const SightContext context{&views, &depths,          &input.facts,
+                             &lost,  ground.cell_side, options.min_parallax_deg};
   result.records = StartRecords(context, num_threads);
-  context.min_texture = MinTexture(result.records, input.facts);
 
   const AskedArea* asked = input.asked.Empty() ? nullptr : &input.asked;
   SpreadCells(views, &ground);
   JudgeGround(context, {options.spacing > 0 ? 0 : step, asked}, num_threads, &ground);
+  LeaveOutBackground(result.gsd, &ground);
+  TellWhatLacksTexture(&ground);
   JudgeUnseen(kOutlineRadius * plan.across, asked, lost, &ground);
   FillRecords(context, ground, num_threads, &result.records);
 

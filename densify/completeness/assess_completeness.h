@@ -27,6 +27,9 @@
 
 namespace colmap_seapoint {
 
+// Raise it whenever the same inputs and options give another answer than before.
+inline constexpr char kCompletenessVersion[] = "1";
+
 struct ConfidentPoint {
   SurfacePoint place;
   float confidence = 1;
@@ -44,6 +47,8 @@ struct CompletenessInput {
   // Calls its argument for every point of the cloud, in order. Called twice.
   std::function<void(const std::function<void(const ConfidentPoint&)>&)> for_each_point;
   uint64_t num_points = 0;
+  // The plan for a sample of the cloud; empty: the world's own.
+  std::function<PlanFrame(const std::vector<Eigen::Vector3d>&)> frame_of;
   std::vector<PictureFacts> facts;    // by image_idx; Empty(): nobody has looked at it
   std::vector<std::string> lost;      // names of pictures that are in no model
   AskedArea asked;                    // in the map's plan; Empty(): the outline of what was imaged
@@ -72,6 +77,8 @@ struct CompletenessResult {
   // Of the sample of the cloud that is in a picture: small when cloud and model do not belong
   // together. Below kMinBelonging nothing else is filled.
   double belonging_share = 0;
+  // Of the asked area, which holds too many cells of two wanted spacings: nothing else is filled.
+  bool is_area_too_large = false;
   double gsd = 0;                      // units a pixel: median of the better pair's
   double spacing = 0;                  // units
   double expected_area = 0;            // units^2, along the surface
@@ -85,6 +92,7 @@ struct CompletenessResult {
   Ground ground;
   std::vector<PictureRecord> records;  // by image_idx
   std::vector<LostRun> lost_runs;
+  double unlisted_area = 0;      // of what is missing in gaps too small to go back to
   std::vector<Gap> gaps;         // ranked: most area for a unit of length first
   std::vector<RouteStop> route;  // over `gaps`
   int last_id = 0;               // the largest that was ever given

@@ -12,13 +12,9 @@ constexpr int kSide = TiledGrid<GroundCell>::kSide;
 // Without a limit of sight, pictures that look towards the horizon are cut off at that many
 // heights.
 constexpr double kMaxHeights = 8;
-// Views and parallax of covered cells are looked at on every fourth cell both ways.
-constexpr int kSampleCells = 4;
 // A hole on a wall: covered within so many cells in three of four directions, at about its depth.
 constexpr int kHoleReach = 24, kHoleDepth = 12;
 constexpr double kDenseTile = 0.25;
-// Of the survey's spacing: beyond that a place was seen from afar.
-constexpr double kFar = 1.3;
 constexpr double kFewPoints = 5;
 constexpr int kMaxReach = 4;  // cells
 // What blurred pictures alone have measured counts where so many of the 8 cells around are within
@@ -124,7 +120,7 @@ class TileJudge {
       GroundCell& cell = tile[static_cast<size_t>(i)];
       if (!cell.is_covered) {
         JudgeCell(candidates, x, y, &cell);
-      } else if (has_bad || (x % kSampleCells == 0 && y % kSampleCells == 0)) {
+      } else if (has_bad || IsSampledCell(x, y)) {
         JudgeCovered(SightsAt(candidates, x, y, cell), x, y, &cell);
       }
       RespectArea(x, y, &cell);
@@ -164,13 +160,16 @@ class TileJudge {
     return SightsOf(context_, candidates, ground_.PlaceOf(*layer_, x, y, cell.height),
                     layer_->layer_from_world.transpose() * plane.Normal());
   }
-  static void Note(const std::vector<Sight>& sights, GroundCell* cell) {
+  void Note(const std::vector<Sight>& sights, GroundCell* cell) const {
+    cell->has_pair = IsSeenFromTwoSides(sights, context_.min_parallax_deg);
+    cell->gsd = static_cast<float>(NearestGsd(sights));
+    cell->texture = MedianTexture(sights);
     cell->num_views = static_cast<uint8_t>(std::min(255, NumGood(sights)));
     cell->parallax_deg = static_cast<uint8_t>(std::lround(ParallaxDeg(sights)));
   }
   // What other layers look at must not change while they do.
   void JudgeCovered(const std::vector<Sight>& sights, int x, int y, GroundCell* cell) const {
-    Note(sights, cell);
+    if (IsSampledCell(x, y)) Note(sights, cell);
     if (!is_top_ || !NeedsBadPictures(context_, sights) || IsSmooth(x, y, *cell)) return;
     cell->is_covered = false;
     cell->cause = GapCause::kBadPicture;
@@ -181,21 +180,21 @@ class TileJudge {
     const std::vector<Sight> sights = SightsAt(candidates, x, y, *cell);
     if (sights.empty()) return;
     Note(sights, cell);
-    cell->is_imaged = cell->is_expected = true;
+    cell->is_expected = true;
     if (is_top_ && IsCoveredFromAfar(sights, x, y, *cell)) {
-      cell->is_covered = true;
+      cell->is_covered = cell->is_from_afar = true;
       return;
     }
     cell->cause = CauseOf(context_, sights, ground_.PlaceOf(*layer_, x, y, cell->height));
     if (cell->cause == GapCause::kOutOfArea) cell->is_expected = false;
   }
-  // Whether the surroundings hold what the second nearest good picture can give there.
+  // Whether the surroundings hold what the two pictures that measure the place best can give.
   bool IsCoveredFromAfar(const std::vector<Sight>& sights, int x, int y,
                          const GroundCell& cell) const {
-    const auto gsd = SecondGsd(sights);
+    const auto gsd = PairGsd(sights, context_.min_parallax_deg);
     const double spacing = gsd ? *gsd * options_.pixels_a_point : 0;
     // What is as near as usual has been asked for its points already.
-    if (kCellSpacings * spacing <= kFar * ground_.cell_side) return false;
+    if (kCellSpacings * spacing <= ground_.cell_side) return false;
     const double wanted = kCoveredShare * WantedPoints(cell.area, spacing);
     // As many cells as should hold a few points.
     const int reach =

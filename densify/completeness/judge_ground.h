@@ -12,16 +12,20 @@ namespace colmap_seapoint {
 // around what other layers hold.
 void SpreadCells(const std::vector<SurveyView>& views, Ground* ground);
 
+// Of covered cells, views and parallax are looked at on every fourth cell both ways.
+inline constexpr int kSampleCells = 4;
+inline bool IsSampledCell(int x, int y) { return x % kSampleCells == 0 && y % kSampleCells == 0; }
+
 struct JudgeOptions {
-  // A place is covered, too, that holds what its second nearest good picture can give at this many
-  // pixels a point; 0: the wanted spacing is asked for everywhere.
+  // Where the two pictures that measure a place best are farther from it than usual, what they can
+  // give at this many pixels a point is enough; 0: the wanted spacing is asked for everywhere.
   double pixels_a_point = 0;
   const AskedArea* asked = nullptr;  // nullptr: no area is asked for
 };
 
-// Fills cause, is_imaged, is_expected, num_views and parallax_deg. The same for any number of
-// threads. Where no picture sees a cell nothing is said yet (outline.h). About a microsecond an
-// uncovered cell and picture that may see it.
+// Fills cause, is_expected and what the pictures tell; of cells that were covered before, of every
+// sixteenth. Where no picture sees a cell nothing is said yet (outline.h). The same for any number
+// of threads. About a microsecond an uncovered cell and picture that may see it.
 void JudgeGround(const SightContext& context, const JudgeOptions& options, int num_threads,
                  Ground* ground);
 

@@ -37,16 +37,16 @@ struct Blocks {
   }
 };
 
-CellBox ImagedBox(TiledGrid<GroundCell>* cells) {
+CellBox ExpectedBox(TiledGrid<GroundCell>* cells) {
   CellBox box;
   cells->ForEach([&](int x, int y, const GroundCell& cell) {
-    if (cell.is_imaged) box.Take(x, y);
+    if (cell.is_expected) box.Take(x, y);
   });
   return box;
 }
 
-// Blocks of which pictures have imaged half, with a margin all round.
-Blocks ImagedBlocks(const CellBox& box, double radius_cells, TiledGrid<GroundCell>* cells) {
+// Blocks of which half is expected, with a margin all round.
+Blocks ExpectedBlocks(const CellBox& box, double radius_cells, TiledGrid<GroundCell>* cells) {
   Blocks blocks;
   blocks.size = std::max(kMinBlock, static_cast<int>(radius_cells / kBlocksARadius));
   const auto num_blocks = [&] {
@@ -59,7 +59,7 @@ Blocks ImagedBlocks(const CellBox& box, double radius_cells, TiledGrid<GroundCel
   cv::Mat count((box.y1 - blocks.y0) / blocks.size + margin + 1,
                 (box.x1 - blocks.x0) / blocks.size + margin + 1, CV_32S, cv::Scalar(0));
   cells->ForEach([&](int x, int y, const GroundCell& cell) {
-    if (!cell.is_imaged) return;
+    if (!cell.is_expected) return;
     ++count.at<int>((y - blocks.y0) / blocks.size, (x - blocks.x0) / blocks.size);
   });
   blocks.inside = count * 2 >= blocks.size * blocks.size;
@@ -75,7 +75,7 @@ void Close(double radius_blocks, cv::Mat* inside) {
   // What is added no wider than two blocks comes from the blocks' steps.
   cv::morphologyEx(added, added, cv::MORPH_OPEN,
                    cv::getStructuringElement(cv::MORPH_RECT, cv::Size(3, 3)));
-  // The outermost blocks are imaged in part: beyond is no hole.
+  // The outermost blocks are expected in part: beyond is no hole.
   *inside |= added;
   cv::erode(*inside, *inside, cv::Mat(), cv::Point(-1, -1), 1, cv::BORDER_CONSTANT, 0);
   *inside |= added;
@@ -123,23 +123,24 @@ void MakeTiles(const Blocks& blocks, TiledGrid<GroundCell>* cells) {
 
 void JudgeUnseen(double radius, const AskedArea* asked, const LostSight& lost, Ground* ground) {
   GroundLayer& top = ground->LayerAt({Side::kTop, 0});
-  const CellBox box = ImagedBox(&top.cells);
-  if (box.IsEmpty()) return;
+  const CellBox box = ExpectedBox(&top.cells);
+  if (asked == nullptr && box.IsEmpty()) return;
   const double radius_cells = radius / ground->cell_side;
   Blocks blocks;
   if (asked != nullptr) {
     blocks = AskedBlocks(*ground, *asked);
   } else {
-    blocks = ImagedBlocks(box, radius_cells, &top.cells);
+    blocks = ExpectedBlocks(box, radius_cells, &top.cells);
     Close(radius_cells / blocks.size, &blocks.inside);
   }
   MakeTiles(blocks, &top.cells);
   top.cells.ForEach([&](int x, int y, GroundCell& cell) {
-    if (cell.is_imaged || !blocks.Holds(x, y)) return;
+    if (cell.is_expected || cell.cause == GapCause::kOutOfArea || !blocks.Holds(x, y)) return;
     const Eigen::Vector2d middle((x + 0.5) * ground->cell_side, (y + 0.5) * ground->cell_side);
     if (asked != nullptr && !asked->Contains(middle)) return;
-    PredictCell(*ground, top, x, y, &cell);
     cell.is_expected = true;
+    if (cell.is_covered || cell.cause != GapCause::kNone) return;  // background
+    PredictCell(*ground, top, x, y, &cell);
     const bool is_lost = lost.RunThatSaw(ground->PlaceOf(top, x, y, cell.height)) >= 0;
     cell.cause = is_lost ? GapCause::kPoseLost : GapCause::kNeverImaged;
   });

@@ -7,11 +7,11 @@
 
 namespace colmap_seapoint {
 
-// The outline is the closing of what pictures have imaged of the top layer: all that a disc of
-// `radius` (units) cannot reach from outside without touching imaged ground. Cells inside of it
-// that no picture saw become expected: kPoseLost where lost pictures must have been, else
-// kNeverImaged. With an asked area its inside takes the outline's place. Cells that are not there
-// yet are made.
+// The outline is the closing of what is expected of the top layer: all that a disc of `radius`
+// (units) cannot reach from outside without touching expected ground. Cells inside of it that no
+// picture saw become expected: kPoseLost where lost pictures must have been, else kNeverImaged; and
+// so does background that lies inside. With an asked area its inside takes the outline's place.
+// Cells that are not there yet are made.
 void JudgeUnseen(double radius, const AskedArea* asked, const LostSight& lost, Ground* ground);
 
 }  // namespace colmap_seapoint

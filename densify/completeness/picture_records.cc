@@ -1,7 +1,6 @@
 #include "densify/completeness/picture_records.h"
 
 #include <algorithm>
-#include <array>
 
 #include "colmap_seapoint/base/parallel.h"
 
@@ -10,8 +9,6 @@ namespace {
 
 constexpr int kSide = TiledGrid<GroundCell>::kSide;
 constexpr int kMinDrawn = 3;  // of four depth cells
-constexpr double kSmoothest = 0.02, kOfMedian = 0.25;
-
 static_assert(kPictureCell == 2 * kDepthCell);
 
 // Depth cells beyond the picture's edge are missing from both counts.
@@ -112,32 +109,6 @@ std::vector<PictureRecord> StartRecords(const SightContext& context, int num_thr
     records[i] = StartRecord((*context.views)[i], (*context.depths)[i], (*context.facts)[i]);
   });
   return records;
-}
-
-double MinTexture(const std::vector<PictureRecord>& records,
-                  const std::vector<PictureFacts>& facts) {
-  std::array<int64_t, 256> counts = {};
-  int64_t num_cells = 0;
-  for (size_t i = 0; i < records.size(); ++i) {
-    if (facts[i].Empty() || facts[i].is_bad) continue;
-    const size_t count = std::min(facts[i].texture.size(), records[i].states.size());
-    for (size_t k = 0; k < count; ++k) {
-      if (records[i].states[k] != CellState::kCovered) continue;
-      ++counts[facts[i].texture[k]];
-      ++num_cells;
-    }
-  }
-  const auto quantile = [&](double share) {
-    int64_t below = 0;
-    for (size_t t = 0; t < counts.size(); ++t) {
-      below += counts[t];
-      if (static_cast<double>(below) > share * static_cast<double>(num_cells)) {
-        return static_cast<double>(t);
-      }
-    }
-    return 0.0;
-  };
-  return num_cells == 0 ? 0 : std::max(quantile(kSmoothest), kOfMedian * quantile(0.5));
 }
 
 void FillRecords(const SightContext& context, const Ground& ground, int num_threads,

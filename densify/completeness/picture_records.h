@@ -21,12 +21,6 @@ struct PictureRecord {
 // A cell is covered when the cloud lies in three of its four depth cells. In parallel by picture.
 std::vector<PictureRecord> StartRecords(const SightContext& context, int num_threads);
 
-// Brightness deviation (as in PictureFacts) below which nothing can be matched in this survey: what
-// one covered cell in fifty stays below, a quarter of their median at the least. 0 without covered
-// cells.
-double MinTexture(const std::vector<PictureRecord>& records,
-                  const std::vector<PictureFacts>& facts);
-
 // Carries the ground's causes into the pictures that see it. In parallel by picture.
 void FillRecords(const SightContext& context, const Ground& ground, int num_threads,
                  std::vector<PictureRecord>* records);

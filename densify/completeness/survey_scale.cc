@@ -8,6 +8,7 @@ namespace {
 
 constexpr uint64_t kSampleSize = 20000;
 constexpr size_t kScaleSample = 1000;
+constexpr double kMinCosine = 0.17;  // of the angle to the normal: 80 degrees
 
 // Whether the track runs along the pictures' width.
 bool RunsAlongWidth(const std::vector<SurveyView>& views) {
@@ -22,6 +23,23 @@ bool RunsAlongWidth(const std::vector<SurveyView>& views) {
   return along_x > along_y;
 }
 
+// Of a point of the cloud: nothing hides it.
+std::vector<Sight> SightsOfPoint(const std::vector<SurveyView>& views, const SurfacePoint& point) {
+  std::vector<Sight> sights;
+  for (const SurveyView& view : views) {
+    if (!view.Project(point.xyz)) continue;
+    const Eigen::Vector3d to_camera = view.center - point.xyz;
+    // A normal that is not known looks at the camera.
+    const double length = to_camera.norm() * point.normal.norm();
+    const double cosine = length > 0 ? std::abs(point.normal.dot(to_camera)) / length : 1;
+    Sight sight;
+    sight.gsd = view.GsdAt(point.xyz) / std::sqrt(std::max(cosine, kMinCosine));
+    sight.toward = to_camera.normalized();
+    sights.push_back(sight);
+  }
+  return sights;
+}
+
 }  // namespace
 
 double MedianOf(std::vector<double> values) {
@@ -31,36 +49,39 @@ double MedianOf(std::vector<double> values) {
   return *middle;
 }
 
-CloudSample SampleCloud(const CompletenessInput& input) {
-  CloudSample sample;
+std::vector<SurfacePoint> SampleCloud(const CompletenessInput& input) {
+  std::vector<SurfacePoint> sample;
   const uint64_t every = std::max<uint64_t>(1, input.num_points / kSampleSize);
   uint64_t index = 0;
   input.for_each_point([&](const ConfidentPoint& point) {
-    if (index++ % every == 0) sample.points.push_back(point.place.xyz);
+    if (index++ % every == 0) sample.push_back(point.place);
   });
   return sample;
 }
 
-SurveyScale MeasureScale(const std::vector<SurveyView>& views, const CloudSample& sample) {
-  const size_t every = std::max<size_t>(1, sample.points.size() / kScaleSample);
-  std::vector<double> gsds;
-  size_t num_seen = 0, num_points = 0;
-  for (size_t i = 0; i < sample.points.size(); i += every) {
+std::vector<Eigen::Vector3d> PlacesOf(const std::vector<SurfacePoint>& points) {
+  std::vector<Eigen::Vector3d> places;
+  for (const SurfacePoint& point : points) places.push_back(point.xyz);
+  return places;
+}
+
+SurveyScale MeasureScale(const std::vector<SurveyView>& views,
+                         const std::vector<SurfacePoint>& sample, double min_parallax_deg) {
+  const size_t every = std::max<size_t>(1, sample.size() / kScaleSample);
+  std::vector<double> pairs, nearest;
+  size_t num_points = 0;
+  for (size_t i = 0; i < sample.size(); i += every) {
     ++num_points;
-    std::vector<double> of_point;
-    for (const SurveyView& view : views) {
-      if (view.Project(sample.points[i])) of_point.push_back(view.GsdAt(sample.points[i]));
-    }
-    if (of_point.empty()) continue;
-    ++num_seen;
-    std::sort(of_point.begin(), of_point.end());
-    gsds.push_back(of_point[std::min<size_t>(1, of_point.size() - 1)]);
+    const std::vector<Sight> sights = SightsOfPoint(views, sample[i]);
+    if (sights.empty()) continue;
+    nearest.push_back(NearestGsd(sights));
+    if (const auto gsd = PairGsd(sights, min_parallax_deg)) pairs.push_back(*gsd);
   }
   SurveyScale scale;
-  scale.gsd = MedianOf(std::move(gsds));
   if (num_points > 0) {
-    scale.seen_share = static_cast<double>(num_seen) / static_cast<double>(num_points);
+    scale.seen_share = static_cast<double>(nearest.size()) / static_cast<double>(num_points);
   }
+  scale.gsd = MedianOf(pairs.empty() ? std::move(nearest) : std::move(pairs));
   return scale;
 }
 
@@ -83,12 +104,6 @@ PassPlan PlanLikeSurvey(const std::vector<SurveyView>& views, const Ground& grou
   plan.forward_overlap = options.forward_overlap;
   plan.side_overlap = options.side_overlap;
   return plan;
-}
-
-std::vector<Eigen::Vector3d> CentersOf(const std::vector<SurveyView>& views) {
-  std::vector<Eigen::Vector3d> centers;
-  for (const SurveyView& view : views) centers.push_back(view.center);
-  return centers;
 }
 
 std::vector<std::string> NamesOf(const SparseModel& model) {

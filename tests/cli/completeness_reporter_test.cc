@@ -104,6 +104,48 @@ TEST_F(CompletenessReporter, TheHoleIsFound) {
   EXPECT_EQ(Answer().at("gaps"), answer.at("gaps"));
 }
 
+TEST_F(CompletenessReporter, MapsOfLayersThatHaveNoGapsAnyMoreGo) {
+  ASSERT_EQ(Report().exit_code, 0);
+  // As an earlier run would have left it, and a file of the user's.
+  WriteTextFile(folder_ / "out" / "map_left_3.png", "former");
+  WriteTextFile(folder_ / "out" / "map_mine.png", "the user's");
+  {
+    std::ofstream names(folder_ / "out" / ".colmap_seapoint", std::ios::app);
+    names << "map_left_3.png\n";
+  }
+  ASSERT_EQ(Report().exit_code, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "out" / "map_left_3.png"));
+  EXPECT_TRUE(fs::exists(folder_ / "out" / "map_mine.png"));
+  EXPECT_TRUE(fs::exists(folder_ / "out" / "map.png"));
+}
+
+// The same survey turned onto its side: z is no height.
+TEST_F(CompletenessReporter, AnAreaNeedsALevelModel) {
+  SparseModel model = ReadSparseModel(folder_ / "sparse", ModelContent::kPosesAndPoints);
+  const Eigen::Quaterniond turn(std::sqrt(0.5), std::sqrt(0.5), 0, 0);
+  for (PosedImage& image : model.images) {
+    image.cam_from_world.rotation = image.cam_from_world.rotation * turn.conjugate();
+  }
+  WriteSparseModelText(folder_ / "sparse", model);
+  std::vector<CloudPoint> points = ReadCloud(folder_ / "fused.ply");
+  CloudWriter cloud(folder_ / "fused.ply");
+  for (CloudPoint& point : points) {
+    point.xyz = turn.cast<float>() * point.xyz;
+    point.normal = turn.cast<float>() * point.normal;
+    const uint32_t seen_by[] = {0, 1};
+    cloud.Add(point, seen_by, 2);
+  }
+  cloud.Finish();
+  ASSERT_EQ(Report().exit_code, 0);
+  std::ifstream in(folder_ / "out" / "gaps.geojson");
+  EXPECT_NE(Json::parse(in).at("map_from_model"), Json::parse("[[1,0,0],[0,1,0],[0,0,1]]"));
+  const fs::path area = folder_ / "area.geojson";
+  WriteTextFile(area, R"({"type":"Polygon","coordinates":[[[0,0],[1,0],[1,1],[0,0]]]})");
+  const CliResult result = Report({"--area", area.string()});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("does not point up"), std::string::npos) << result.err;
+}
+
 TEST_F(CompletenessReporter, WithoutPictures) {
   const CliResult result = Report();
   EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -124,6 +166,11 @@ TEST_F(CompletenessReporter, FaultsSayWhatToDo) {
   const fs::path area = folder_ / "area.geojson";
   WriteTextFile(area, R"({"type":"Polygon","coordinates":[[[0,0],[1,1],[1,0],[0,1],[0,0]]]})");
   EXPECT_NE(last_line_of(Report({"--area", area.string()})).find("crosses itself"),
+            std::string::npos);
+  WriteTextFile(area, R"({"type":"Polygon","coordinates":[[[0,0],[1e9,0],[1e9,1e9],[0,0]]]})");
+  EXPECT_NE(last_line_of(Report({"--area", area.string()})).find("too large"), std::string::npos);
+  WriteTextFile(area, R"({"type":"Polygon","coordinates":[[[90,90],[91,90],[91,91],[90,90]]]})");
+  EXPECT_NE(last_line_of(Report({"--area", area.string()})).find("no picture shows"),
             std::string::npos);
   // Another dive's pictures.
   fs::create_directories(folder_ / "other");

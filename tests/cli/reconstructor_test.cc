@@ -50,7 +50,9 @@ TEST_F(Reconstructor, RunsTheWholeChain) {
        {"database.db", "sparse/0/images.bin", "dense/0/fused.ply", "dense/0/fused.ply.vis",
         "dense/0/pairs.csv", "dense/0/run.json", "map/0/orthomosaic.tif", "map/0/dem.tif",
         "map/0/source.tif", "map/0/hillshade.png", "map/0/orthomosaic.jpg", "map/0/map.json",
-        "report/summary.txt", "report/run.json", "report/mapper_1_thinned.log"}) {
+        "report/summary.txt", "report/run.json", "report/completeness/0/completeness.json",
+        "report/completeness/0/gaps.geojson", "report/completeness/0/map.png",
+        "report/mapper_1_thinned.log"}) {
     EXPECT_TRUE(fs::exists(Workspace() / file)) << file;
   }
   EXPECT_FALSE(fs::exists(Workspace() / "sparse.tmp"));
@@ -63,8 +65,17 @@ TEST_F(Reconstructor, RunsTheWholeChain) {
   std::set<std::string> stages;
   for (const auto& stage : report["stages"]) stages.insert(stage["name"]);
   EXPECT_EQ(stages, (std::set<std::string>{"feature_extractor", "exhaustive_matcher", "mapper",
-                                           "partial_densifier 0", "orthomosaic 0"}));
+                                           "partial_densifier 0", "orthomosaic 0",
+                                           "completeness_reporter 0"}));
   EXPECT_NE(result.out.find("map in " + (Workspace() / "map/0").string()), std::string::npos);
+  EXPECT_NE(result.out.find("% (+- "), std::string::npos) << result.Text();
+  // Again: the answer is remembered; without it: what was there goes.
+  const CliResult again = Reconstruct("model");
+  EXPECT_NE(again.out.find("% (+- "), std::string::npos) << again.Text();
+  EXPECT_NE(again.err.find("completeness/0 is there already"), std::string::npos) << again.Text();
+  const CliResult without = Reconstruct("model", {"--completeness", "0"});
+  EXPECT_EQ(without.out.find("% (+- "), std::string::npos) << without.Text();
+  EXPECT_FALSE(fs::exists(Workspace() / "report/completeness/0"));
 }
 
 TEST_F(Reconstructor, MapZeroMakesNoneAndRemovesThoseOfEarlierRuns) {

@@ -20,6 +20,7 @@ TEST(SummaryTextTest, PicturesModelsCloudsAndTimes) {
   metric.densification.points = 1234567;
   metric.cloud_path = "ws/dense/0/fused.ply";
   metric.units = "metres, local";
+  metric.completeness = "96.7 % covered";
   metric.scaling = "scale 1.5 +- 0.01";
   ModelSummary empty;
   empty.name = "1";
@@ -29,6 +30,7 @@ TEST(SummaryTextTest, PicturesModelsCloudsAndTimes) {
             "camera 1 (1000x750): 9 pictures; focal length 900 px guessed\n"
             "model 0: 4 pictures, 3 pairs, 1234567 points in ws/dense/0/fused.ply\n"
             "  metres, local (scale 1.5 +- 0.01)\n"
+            "  completeness: 96.7 % covered\n"
             "model 1: 3 pictures, 0 pairs, 0 points\n"
             "  units arbitrary\n"
             "left out: img8.jpg: is in no model\n"

@@ -51,9 +51,28 @@ struct HalvedCell {
   }
 };
 
+// `texture`: the deviation of what is left when brightness that rises evenly over the cell is taken
+// out.
 struct CellMeasure {
-  double mean = 0, deviation = 0, sharpness = 0;
+  double mean = 0, deviation = 0, texture = 0, sharpness = 0;
 };
+
+// Variance that an even rise over the cell explains.
+double RiseVariance(const HalvedCell& cell) {
+  const double middle_x = 0.5 * (cell.width - 1), middle_y = 0.5 * (cell.height - 1);
+  double xx = 0, yy = 0, xv = 0, yv = 0;
+  for (int j = 0; j < cell.height; ++j) {
+    for (int i = 0; i < cell.width; ++i) {
+      const double x = i - middle_x, y = j - middle_y;
+      xx += x * x;
+      yy += y * y;
+      xv += x * cell.value[j][i];
+      yv += y * cell.value[j][i];
+    }
+  }
+  const double explained = (xx > 0 ? xv * xv / xx : 0) + (yy > 0 ? yv * yv / yy : 0);
+  return explained / (cell.width * cell.height);
+}
 
 CellMeasure MeasureCell(const HalvedCell& cell) {
   CellMeasure measure;
@@ -68,6 +87,8 @@ CellMeasure MeasureCell(const HalvedCell& cell) {
   }
   measure.mean = sum / count;
   measure.deviation = std::sqrt(std::max(0.0, squares / count - measure.mean * measure.mean));
+  measure.texture =
+      std::sqrt(std::max(0.0, measure.deviation * measure.deviation - RiseVariance(cell)));
   // White noise: 1. What is smeared in one direction alone loses some of it, too.
   if (measure.deviation > 0) {
     measure.sharpness = std::sqrt(0.5 * cell.Contrast()) / measure.deviation;
@@ -106,7 +127,7 @@ PictureFacts MeasurePicture(const GrayImage& luma, const GrayImage& mask) {
       const int x0 = a * kPictureCell, y0 = b * kPictureCell;
       const CellMeasure cell = MeasureCell(HalvedCell(luma, x0, y0));
       const bool is_bad = cell.mean < kDark || cell.mean > kBurnt;
-      facts.texture.push_back(static_cast<uint8_t>(std::min(255.0, 4 * cell.deviation)));
+      facts.texture.push_back(static_cast<uint8_t>(std::min(255.0, 4 * cell.texture)));
       facts.flags.push_back(static_cast<uint8_t>((IsMasked(mask, x0, y0) ? kMaskedCell : 0) |
                                                  (is_bad ? kBadlyExposedCell : 0)));
       if (cell.deviation > kTextured && !is_bad) sharpness.push_back(cell.sharpness);

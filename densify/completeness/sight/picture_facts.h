@@ -14,9 +14,11 @@ inline constexpr int kPictureCell = 16;  // pixels
 enum PictureCellFlag : uint8_t { kMaskedCell = 1, kBadlyExposedCell = 2 };
 
 struct PictureFacts {
-  int width = 0, height = 0;     // cells
-  std::vector<uint8_t> texture;  // deviation of brightness within the cell, in quarters of a level
-  std::vector<uint8_t> flags;    // PictureCellFlag
+  int width = 0, height = 0;  // cells
+  // Deviation of brightness within the cell from one that rises evenly, as a lamp's light does; in
+  // quarters of a level.
+  std::vector<uint8_t> texture;
+  std::vector<uint8_t> flags;  // PictureCellFlag
   double sharpness = 0;  // of the picture: contrast of neighbours over that of cells, their median
   bool is_bad = false;   // blurred or badly exposed as a whole (JudgePictures)
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 namespace colmap_seapoint {
 namespace {
@@ -13,18 +14,16 @@ const double kMinCosine = std::cos(80 / kDegPerRad);
 // hidden.
 constexpr double kHiddenShare = 0.01, kHiddenCells = 3;
 
-// Of a picture that nobody has looked at.
-constexpr uint8_t kUnknownTexture = 255;
+constexpr double kMaxParallax = 0.2;  // radians
 
 SightKind KindOf(const SightContext& context, int image_idx, const Eigen::Vector2d& pixel,
-                 double depth, uint8_t* texture) {
+                 double depth, double slack, uint8_t* texture) {
   const auto i = static_cast<size_t>(image_idx);
   const PictureFacts& facts = (*context.facts)[i];
   const size_t cell = facts.Empty() ? 0 : facts.CellAt(pixel.x(), pixel.y());
   const uint8_t flags = facts.Empty() ? 0 : facts.flags[cell];
   *texture = facts.Empty() ? kUnknownTexture : facts.texture[cell];
   if (flags & kMaskedCell) return SightKind::kMasked;
-  const double slack = kHiddenShare * depth + kHiddenCells * context.cell_side;
   if (IsHidden((*context.depths)[i], pixel, depth, slack)) return SightKind::kHidden;
   return facts.is_bad || (flags & kBadlyExposedCell) ? SightKind::kBad : SightKind::kGood;
 }
@@ -53,18 +52,6 @@ int Count(const std::vector<Sight>& sights, SightKind kind) {
       std::count_if(sights.begin(), sights.end(), [&](const Sight& s) { return s.kind == kind; }));
 }
 
-// Whether what the second best picture shows is too smooth to be matched.
-bool LacksTexture(const std::vector<Sight>& sights, double min_texture) {
-  std::vector<uint8_t> texture;
-  for (const Sight& s : sights) {
-    if (s.kind == SightKind::kGood) texture.push_back(s.texture);
-  }
-  if (texture.size() < 2) return false;
-  const auto middle = texture.begin() + static_cast<std::ptrdiff_t>(texture.size() / 2);
-  std::nth_element(texture.begin(), middle, texture.end());
-  return *middle < min_texture;
-}
-
 }  // namespace
 
 std::vector<Sight> SightsOf(const SightContext& context, const std::vector<int>& candidates,
@@ -79,11 +66,14 @@ std::vector<Sight> SightsOf(const SightContext& context, const std::vector<int>&
     const auto pixel = view.Project(place);
     if (!pixel) continue;
     Sight sight;
-    sight.image_idx = image_idx;
     const double depth = view.rotation.row(2).dot(place) + view.translation.z();
-    sight.kind = KindOf(context, image_idx, *pixel, depth, &sight.texture);
     const double cosine = normal.dot(to_camera) / (distance * normal_length);
-    sight.gsd = distance / view.camera->MeanFocal() / std::sqrt(cosine);
+    const double across = distance / view.camera->MeanFocal();
+    // A cell of depths holds a piece of a tilted surface from its nearest to its farthest end.
+    const double within_cell = kDepthCell * across * std::sqrt(1 - cosine * cosine) / cosine;
+    const double slack = kHiddenShare * depth + kHiddenCells * context.cell_side + within_cell;
+    sight.kind = KindOf(context, image_idx, *pixel, depth, slack, &sight.texture);
+    sight.gsd = across / std::sqrt(cosine);
     sight.toward = to_camera / distance;
     sights.push_back(sight);
   }
@@ -103,14 +93,47 @@ double ParallaxDeg(const std::vector<Sight>& sights) {
 
 int NumGood(const std::vector<Sight>& sights) { return Count(sights, SightKind::kGood); }
 
-std::optional<double> SecondGsd(const std::vector<Sight>& sights) {
-  std::vector<double> gsd;
-  for (const Sight& s : sights) {
-    if (s.kind == SightKind::kGood) gsd.push_back(s.gsd);
+std::optional<double> PairGsd(const std::vector<Sight>& sights, double min_parallax_deg) {
+  const double max_cosine = std::cos(min_parallax_deg / kDegPerRad);
+  double least = std::numeric_limits<double>::infinity(), gsd = 0;
+  for (size_t k = 1; k < sights.size(); ++k) {
+    for (size_t m = 0; m < k; ++m) {
+      if (sights[k].kind != SightKind::kGood || sights[m].kind != SightKind::kGood) continue;
+      const double cosine = sights[m].toward.dot(sights[k].toward);
+      if (cosine > max_cosine) continue;
+      const double coarser = std::max(sights[k].gsd, sights[m].gsd);
+      // The chord between the two directions: the angle in radians, nearly.
+      const double parallax = std::min(kMaxParallax, std::sqrt(2 - 2 * cosine));
+      if (coarser >= least * parallax) continue;
+      least = coarser / parallax;
+      gsd = coarser;
+    }
   }
-  if (gsd.size() < 2) return std::nullopt;
-  std::nth_element(gsd.begin(), gsd.begin() + 1, gsd.end());
-  return gsd[1];
+  if (gsd == 0) return std::nullopt;
+  return gsd;
+}
+
+double NearestGsd(const std::vector<Sight>& sights) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Sight& s : sights) {
+    if (s.kind != SightKind::kMasked) nearest = std::min(nearest, s.gsd);
+  }
+  return nearest;
+}
+
+bool IsSeenFromTwoSides(const std::vector<Sight>& sights, double min_parallax_deg) {
+  return HasPair(sights, min_parallax_deg, IsSeen);
+}
+
+uint8_t MedianTexture(const std::vector<Sight>& sights) {
+  std::vector<uint8_t> texture;
+  for (const Sight& s : sights) {
+    if (s.kind == SightKind::kGood) texture.push_back(s.texture);
+  }
+  if (texture.size() < 2) return kUnknownTexture;
+  const auto middle = texture.begin() + static_cast<std::ptrdiff_t>(texture.size() / 2);
+  std::nth_element(texture.begin(), middle, texture.end());
+  return *middle;
 }
 
 bool NeedsBadPictures(const SightContext& context, const std::vector<Sight>& sights) {
@@ -124,10 +147,7 @@ GapCause CauseOf(const SightContext& context, const std::vector<Sight>& sights,
   const bool has_hidden = Count(sights, SightKind::kHidden) > 0;
   const bool has_masked = Count(sights, SightKind::kMasked) > 0;
   const int num_good = NumGood(sights);
-  if (HasPair(sights, angle, IsGood)) {
-    return LacksTexture(sights, context.min_texture) ? GapCause::kNoTexture
-                                                     : GapCause::kViewsDisagree;
-  }
+  if (HasPair(sights, angle, IsGood)) return GapCause::kViewsDisagree;
   if (HasPair(sights, angle, IsSeen)) return GapCause::kBadPicture;
   if (context.lost->RunThatSaw(place) >= 0) return GapCause::kPoseLost;
   if (has_hidden && HasPair(sights, angle, [](SightKind k) {

@@ -12,10 +12,12 @@
 
 namespace colmap_seapoint {
 
+// Of pictures that nobody has looked at.
+inline constexpr uint8_t kUnknownTexture = 255;
+
 enum class SightKind : uint8_t { kGood, kBad, kHidden, kMasked };
 
 struct Sight {
-  int image_idx = 0;
   SightKind kind = SightKind::kGood;
   uint8_t texture = 0;     // as in PictureFacts
   double gsd = 0;          // units a pixel on the surface, mean of both directions
@@ -30,7 +32,6 @@ struct SightContext {
   const LostSight* lost;
   double cell_side = 1;  // units
   double min_parallax_deg = 2;
-  double min_texture = 0;  // as in PictureFacts: below it nothing can be matched
 };
 
 // `normal` need not be of unit length. The pictures that hold the place within their range and see
@@ -42,15 +43,24 @@ std::vector<Sight> SightsOf(const SightContext& context, const std::vector<int>&
 double ParallaxDeg(const std::vector<Sight>& sights);
 // Good ones.
 int NumGood(const std::vector<Sight>& sights);
-// GSD of the better pair: the second smallest of the good ones; nullopt for fewer than two.
-std::optional<double> SecondGsd(const std::vector<Sight>& sights);
+// GSD of the coarser one of the two good pictures that measure the place best: whose GSD over their
+// parallax, which counts up to 11.5 degrees as in densification, is the least. nullopt where no two
+// see it `min_parallax_deg` apart.
+std::optional<double> PairGsd(const std::vector<Sight>& sights, double min_parallax_deg);
+// Of all but the masked ones; infinite for none.
+double NearestGsd(const std::vector<Sight>& sights);
+// Median of the good ones'; kUnknownTexture for fewer than two.
+uint8_t MedianTexture(const std::vector<Sight>& sights);
+// Whether two pictures, be they blurred, see the place from two sides.
+bool IsSeenFromTwoSides(const std::vector<Sight>& sights, double min_parallax_deg);
 
 // Whether no two good pictures see the place from two sides, but bad ones make up for it: what is
 // measured in blurred pictures is not to be trusted.
 bool NeedsBadPictures(const SightContext& context, const std::vector<Sight>& sights);
 
-// The best cause: the first thing that would have had to be otherwise. kNone when no picture holds
-// the place, not even a hidden, masked or lost one.
+// The best cause: the first thing that would have had to be otherwise. kViewsDisagree where two
+// good pictures see it from two sides, whatever they show (survey_limits.h). kNone when no picture
+// holds the place, not even a hidden, masked or lost one.
 GapCause CauseOf(const SightContext& context, const std::vector<Sight>& sights,
                  const Eigen::Vector3d& place);
 

@@ -1,5 +1,8 @@
 #include "densify/completeness/surface/asked_area.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace colmap_seapoint {
 namespace {
 
@@ -27,6 +30,16 @@ bool AskedArea::Contains(const Eigen::Vector2d& place) const {
     }
   }
   return is_inside;
+}
+
+bool AskedArea::IsTooLarge(double cell_side) const {
+  double area = 0, extent = 0;
+  for (const Ring& ring : rings) {
+    area += std::abs(SignedArea(ring));
+    for (const Eigen::Vector2d& p : ring) extent = std::max(extent, p.cwiseAbs().maxCoeff());
+  }
+  // Cells are counted from the origin, in whole numbers.
+  return area > kMaxAskedCells * cell_side * cell_side || extent > kMaxAskedCells * cell_side;
 }
 
 bool CrossesItself(const Ring& ring) {

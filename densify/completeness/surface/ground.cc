@@ -69,7 +69,7 @@ void FinishTile(const TileKey& key, double side, GroundLayer* layer) {
     const bool is_coherent = IsCoherent(*layer, x, y, cell, side);
     cell.is_covered = is_coherent && share >= kCoveredShare;
     cell.is_thin = is_coherent && !cell.is_covered && share >= kThinShare;
-    cell.is_expected = cell.is_imaged = cell.is_covered;
+    cell.is_expected = cell.is_covered;
   }
 }
 

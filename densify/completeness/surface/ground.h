@@ -1,7 +1,7 @@
 // The surface as cells on plans: where the cloud covers it, and where something is missing.
 //
 // A cell is two wanted spacings wide. Cells lie on the six sides of a box around the survey
-// (MapFrame): the top one holds all that faces the viewer of the map, the others what is steeper
+// (PlanFrame): the top one holds all that faces the viewer of the map, the others what is steeper
 // than 75 degrees. The five others are cut into slabs as deep as kSlabCells cells, so that two
 // walls one behind the other, or the underside of one thing above that of another, are layers of
 // their own.
@@ -13,7 +13,7 @@
 #include <tuple>
 
 #include "densify/completeness/surface/gap_cause.h"
-#include "densify/completeness/surface/map_frame.h"
+#include "densify/completeness/surface/plan_frame.h"
 #include "densify/completeness/surface/plane_pyramid.h"
 #include "densify/completeness/surface/tiled_grid.h"
 
@@ -24,15 +24,20 @@ inline constexpr double kCellSpacings = 2;  // side of a cell, in wanted spacing
 
 struct GroundCell {
   float height = 0;    // along the side's axis: mean of the points, or the predicted surface's
+  float gsd = 0;       // units a pixel on it, of the nearest picture
   float area = 0;      // units^2 of surface, along its slope
   uint16_t count = 0;  // points of enough confidence
   bool is_covered = false;
-  bool is_thin = false;      // not covered, yet with too many points to call it a gap
-  bool is_imaged = false;    // in the frame of a picture, be it hidden there
-  bool is_expected = false;  // part of what the survey should have covered
+  bool is_thin = false;       // not covered, yet with too many points to call it a gap
+  bool is_from_afar = false;  // covered by what farther pictures than usual can give
+  bool has_pair = false;      // two pictures see it from two sides
+  bool is_expected = false;   // part of what the survey should have covered
   GapCause cause = GapCause::kNone;
-  uint8_t num_views = 0;     // usable pictures that see it
-  uint8_t parallax_deg = 0;  // the largest between two of them, up to 180
+  // Of a sample of the covered cells: usable pictures that see it, and the largest angle between
+  // two of them, up to 180 degrees.
+  uint8_t num_views = 0;
+  uint8_t texture = 255;  // what its good pictures show of it, as in PictureFacts
+  uint8_t parallax_deg = 0;
 };
 
 struct LayerKey {
@@ -53,7 +58,7 @@ struct GroundLayer {
 };
 
 struct Ground {
-  MapFrame frame;
+  PlanFrame frame;
   double cell_side = 1;  // units
   std::map<LayerKey, GroundLayer> layers;
 

@@ -3,12 +3,12 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace colmap_seapoint {
 namespace {
 
-// Of the 9 cells around a place: fewer than that are not "on all sides".
-constexpr int kMinNeighbours = 5;
+constexpr size_t kTrendLevel = 4;  // cells whose slopes' median is the slope of the whole
 // Steeper planes come from noise, or belong to another chart.
 constexpr double kMaxSlope = 3;
 
@@ -34,6 +34,18 @@ PlaneAt FitPlane(const PlaneMoments& m, double u, double v, double side) {
                               std::clamp(v - mv, -1.5 * side, 1.5 * side));
   plane.height = mh + plane.slope.dot(aside);
   return plane;
+}
+
+// Of values with weights; the order in which they come is all the same.
+double WeightedMedian(std::vector<std::pair<double, double>> values) {
+  std::sort(values.begin(), values.end());
+  double total = 0, below = 0;
+  for (const auto& [value, weight] : values) total += weight;
+  for (const auto& [value, weight] : values) {
+    below += weight;
+    if (2 * below >= total) return value;
+  }
+  return 0;
 }
 
 }  // namespace
@@ -76,29 +88,41 @@ void PlanePyramid::Finish() {
       levels_[level][{key.x >> 1, key.y >> 1}].Add(levels_[level - 1].at(key));
     }
   }
+  std::vector<std::pair<double, double>> slopes[2];  // with weights
+  const double side = side_ * (1 << kTrendLevel);
+  for (const auto& [key, moments] : levels_[kTrendLevel]) {
+    const Eigen::Vector2d slope = FitPlane(moments, 0, 0, side).slope;
+    for (int axis = 0; axis < 2; ++axis) slopes[axis].emplace_back(slope[axis], moments.n);
+  }
+  trend_ = {WeightedMedian(std::move(slopes[0])), WeightedMedian(std::move(slopes[1]))};
 }
 
 PlaneAt PlanePyramid::At(double u, double v) const {
   double side = side_;
-  PlaneMoments last;
+  PlaneMoments nearest;
   for (const Level& level : levels_) {
     const TileKey center = KeyAt(u, v, side);
     PlaneMoments sum;
-    int num_known = 0;
+    std::array<bool, 3> has_column = {}, has_row = {};
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
         const auto place = level.find({center.x + dx, center.y + dy});
         if (place == level.end()) continue;
-        ++num_known;
+        has_column[static_cast<size_t>(dx + 1)] = has_row[static_cast<size_t>(dy + 1)] = true;
         sum.Add(place->second);
       }
     }
-    if (num_known >= kMinNeighbours) return FitPlane(sum, u, v, side);
-    if (sum.n > 0) last = sum;
+    if (has_column[0] && has_column[2] && has_row[0] && has_row[2]) {
+      return FitPlane(sum, u, v, side);
+    }
+    if (nearest.n == 0) nearest = sum;
     side *= 2;
   }
   PlaneAt plane;
-  if (last.n > 0) plane.height = last.h / last.n;
+  if (nearest.n == 0) return plane;
+  plane.slope = trend_;
+  plane.height = nearest.h / nearest.n + trend_.x() * (u - nearest.u / nearest.n) +
+                 trend_.y() * (v - nearest.v / nearest.n);
   return plane;
 }
 

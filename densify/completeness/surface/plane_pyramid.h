@@ -32,10 +32,10 @@ class PlanePyramid {
   void Add(double u, double v, double h, double weight);
   // Sums up the coarser levels. To be called once, after the last Add().
   void Finish();
-  bool Empty() const { return levels_.front().empty(); }
 
   // The plane through the nearest surroundings that are known on all sides, at the finest level
-  // that has such. Far outside of what is known, a level plane at the height of its nearest part.
+  // that has such. Where nothing is known on all sides, outside, what lies nearest goes on with the
+  // slope of the whole: that of its rim is chance.
   // About a microsecond; from any number of threads.
   PlaneAt At(double u, double v) const;
 
@@ -44,6 +44,7 @@ class PlanePyramid {
   static constexpr int kNumLevels = 12;
 
   double side_;
+  Eigen::Vector2d trend_ = Eigen::Vector2d::Zero();  // slope of the whole
   std::array<Level, kNumLevels> levels_;
 };
 

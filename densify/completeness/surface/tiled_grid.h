@@ -57,7 +57,6 @@ class TiledGrid {
   bool Holds(const TileKey& key) const { return tiles_.count(key) > 0; }
   Tile& ExistingTile(const TileKey& key) { return tiles_.at(key); }
   const Tile& ExistingTile(const TileKey& key) const { return tiles_.at(key); }
-  size_t NumTiles() const { return tiles_.size(); }
 
   // Row by row: the same order whatever the order in which tiles were made.
   std::vector<TileKey> Keys() const {
@@ -77,6 +76,11 @@ class TiledGrid {
         visit(key.x * kSide + i % kSide, key.y * kSide + i / kSide, tile[static_cast<size_t>(i)]);
       }
     }
+  }
+  template <typename Visitor>
+  void ForEach(const Visitor& visit) const {
+    const_cast<TiledGrid*>(this)->ForEach(
+        [&](int x, int y, const Cell& cell) { visit(x, y, cell); });
   }
 
  private:

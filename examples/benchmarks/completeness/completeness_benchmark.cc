@@ -29,7 +29,7 @@ using Json = nlohmann::json;
 
 constexpr char kUsage[] =
     "completeness_benchmark plant --survey_path DIR --output_path OUT [--seed N] [--num_strips N]\n"
-    "completeness_benchmark score --survey_path DIR --planted_path OUT --cloud_path fused.ply "
+    "completeness_benchmark score --survey_path DIR [--planted_path OUT] --cloud_path fused.ply "
     "--report_path REPORT\n"
     "completeness_benchmark cover --survey_path DIR --output_path CLOUD\n";
 
@@ -116,7 +116,7 @@ int Cover(const std::vector<std::string>& arguments) {
 }
 
 struct ReportedGaps {
-  double spacing = 0, covered_share = 0;
+  double spacing = 0, gsd = 0, covered_share = 0;
   struct One {
     std::string cause;
     AskedArea area;
@@ -124,16 +124,19 @@ struct ReportedGaps {
   std::vector<One> gaps;
 };
 
-ReportedGaps ReadReported(const fs::path& path) {
+ReportedGaps ReadReported(const SurveyTruth& truth, const fs::path& path) {
   std::ifstream in(path / "completeness.json");
   const Json json = Json::parse(in);
-  ReportedGaps reported{json.at("spacing"), json.at("covered_share"), {}};
+  ReportedGaps reported{json.at("spacing"), json.at("gsd"), json.at("covered_share"), {}};
   for (const Json& gap : json.at("gaps")) {
     if (gap.at("layer") != "top") continue;
     ReportedGaps::One one{gap.at("cause"), {}};
     for (const Json& ring : gap.at("outline")) {
       Ring& corners = one.area.rings.emplace_back();
-      for (const Json& p : ring) corners.emplace_back(p[0], p[1]);
+      for (const Json& p : ring) {
+        const Eigen::Vector3d corner(p[0], p[1], p[2]);
+        corners.emplace_back(truth.surface.InGround(corner).head<2>());
+      }
     }
     reported.gaps.push_back(std::move(one));
   }
@@ -255,18 +258,20 @@ int Score(const std::vector<std::string>& arguments) {
   auto add = description.add_options();
   add("help,h", "this text");
   add("survey_path", po::value(&survey_path)->required(), "of demo_survey generate");
-  add("planted_path", po::value(&planted_path)->required(), "of plant");
+  add("planted_path", po::value(&planted_path), "of plant; without it nothing was planted");
   add("cloud_path", po::value(&cloud_path)->required(), "PLY, exact poses");
   add("report_path", po::value(&report_path)->required(), "of completeness_reporter");
   add("picture_path", po::value(&picture_path), "PNG to write: what is right, and what not");
   if (!ParseOptions(description, arguments)) return 0;
   const SurveyTruth truth = ReadSurveyTruth(survey_path);
-  const ReportedGaps reported = ReadReported(report_path);
+  const ReportedGaps reported = ReadReported(truth, report_path);
+  const PlantedGaps planted = planted_path.empty()
+                                  ? PlantedGaps()
+                                  : ReadPlantedGaps(fs::path(planted_path) / "planted.json");
   std::vector<Eigen::Vector3f> points;
   for (const CloudPoint& p : ReadCloud(cloud_path)) points.push_back(p.xyz);
-  const GapTruth gaps =
-      MeasureGapTruth(truth, ReadPlantedGaps(fs::path(planted_path) / "planted.json"),
-                      reported.spacing, points, -1);
+  const GapTruth gaps = MeasureGapTruth(truth, planted, reported.spacing,
+                                        reported.spacing / reported.gsd, points, -1);
   const std::vector<int> owner = OwnersOf(gaps, reported);
   if (!picture_path.empty()) DrawScore(gaps, owner, reported, picture_path);
   const Tallies tallies = TallyCells(gaps, owner, reported);

@@ -29,11 +29,13 @@ struct GapTruth {
   }
 };
 
-// `truth`: all pictures of the survey; `points`: the cloud in its frame. A place is covered when a
-// point lies within two GSD (or one and a half spacings) of it. Expected is what a picture that was
-// taken sees, and what none sees inside of the hull of those of its strip's neighbours (the removed
-// pictures' footprints).
+// `truth`: all pictures of the survey; `points`: the cloud in its frame; `step`: pixels a point. A
+// place is covered when a point lies within two GSD (or one and a half spacings) of it: of those of
+// the two pictures that measure it best, where these are coarser than the survey's own. Expected is
+// what a picture sees that was taken, or would have been (the removed ones), but for background:
+// what no two see from two sides, and all see at twice the survey's own GSD or more, and what lies
+// beyond the limit of sight, as completeness_reporter defines it, by exact visibility.
 GapTruth MeasureGapTruth(const SurveyTruth& truth, const PlantedGaps& gaps, double spacing,
-                         const std::vector<Eigen::Vector3f>& points, int num_threads);
+                         double step, const std::vector<Eigen::Vector3f>& points, int num_threads);
 
 }  // namespace colmap_seapoint

@@ -122,6 +122,44 @@ TEST(AssessCompleteness, SmallParallax) {
   EXPECT_EQ(gap->region.cause, GapCause::kSmallParallax);
 }
 
+// A picture of the same ground from three times the height shows ground on all sides that nobody
+// meant to measure.
+TEST(AssessCompleteness, WhatOnePictureSeesFromAfarIsBackground) {
+  SparseModel model = MakeFlatSurvey();
+  const CompletenessResult before = AssessCompleteness(FlatInput(model, Everywhere), {}, 1);
+  CompletenessInput input = FlatInput(model, Everywhere);
+  PosedImage high = model.images[8];
+  high.image_id = 99;
+  high.name = "high.jpg";
+  high.cam_from_world.translation.z() += 2 * kFlatAltitude;
+  model.images.push_back(high);
+  input.facts.push_back(TexturedFacts());
+  const CompletenessResult result = AssessCompleteness(input, {}, 1);
+  EXPECT_NEAR(result.expected_area, before.expected_area, 0.01 * before.expected_area);
+  // What the outline or an asked area encloses is none.
+  input.asked.rings = {{{-6, 3}, {-4, 3}, {-4, 5}, {-6, 5}}};
+  const CompletenessResult asked = AssessCompleteness(input, {}, 1);
+  EXPECT_NEAR(asked.missing_area[static_cast<size_t>(GapCause::kImagedOnce)], 4, 0.1);
+}
+
+// Half of the survey from twice the height: a quarter of the points is all that there can be.
+TEST(AssessCompleteness, FromAfarNoMoreIsWantedThanThePicturesCanGive) {
+  SparseModel model = MakeFlatSurvey({1, 16, 1.6, 3.2});
+  for (size_t i = 10; i < model.images.size(); ++i) {
+    model.images[i].cam_from_world.translation.z() += kFlatAltitude;
+  }
+  const auto is_near = [](const Eigen::Vector2d& p) { return p.y() < 16; };
+  CompletenessInput input = FlatInput(model, [&](const Eigen::Vector2d& p) {
+    const auto at = [](double x) { return std::lround(x / kFlatGsd + 1e6) % 2 == 0; };
+    return is_near(p) || (at(p.x()) && at(p.y()));
+  });
+  const CompletenessResult result = AssessCompleteness(input, {}, 1);
+  EXPECT_NEAR(result.coverage[0].area, AreaSeen(model, 2), 0.03 * AreaSeen(model, 2));
+  CompletenessOptions strict;
+  strict.spacing = kFlatGsd;
+  EXPECT_LT(AssessCompleteness(input, strict, 1).coverage[0].area, 0.75 * AreaSeen(model, 2));
+}
+
 TEST(AssessCompleteness, AskedAreaIsAllThatCounts) {
   const SparseModel model = MakeFlatSurvey();
   CompletenessInput input = FlatInput(model, OutsideHole);
@@ -251,8 +289,11 @@ TEST(AssessCompleteness, WallIsItsOwnMap) {
   for (PosedImage& image : model.images) {
     image.cam_from_world.rotation = image.cam_from_world.rotation * turn.conjugate();
   }
+  input.frame_of = [&](const std::vector<Eigen::Vector3d>& sample) {
+    EXPECT_FALSE(sample.empty());
+    return PlanFrame{turn.conjugate().toRotationMatrix()};
+  };
   const CompletenessResult result = AssessCompleteness(input, {}, 1);
-  EXPECT_NEAR(result.ground.frame.map_from_world(1, 2), 1, 1e-6);
   const auto gap = std::find_if(result.gaps.begin(), result.gaps.end(), [](const Gap& g) {
     return g.region.cause == GapCause::kViewsDisagree;
   });

@@ -26,8 +26,8 @@ std::vector<Eigen::Vector3d> Lattice(const SparseModel& model, double step) {
     high = high.cwiseMax(center);
   }
   std::vector<Eigen::Vector3d> places;
-  for (double y = low.y() - 3; y < high.y() + 3; y += step) {
-    for (double x = low.x() - 4; x < high.x() + 4; x += step) places.emplace_back(x, y, 0);
+  for (double y = low.y() - 5; y < high.y() + 5; y += step) {
+    for (double x = low.x() - 7; x < high.x() + 7; x += step) places.emplace_back(x, y, 0);
   }
   return places;
 }

@@ -71,8 +71,9 @@ TEST_F(GapFiles, Wgs84WhereGeoreferenced) {
     EXPECT_EQ(a.z(), -20);
     EXPECT_NEAR((b.y() - a.y()) * 111100, 100, 1);
     // There and back.
-    EXPECT_LT(AreaCorner(units, b.head<2>()).y() - 100, 1e-3);
-    EXPECT_LT(AreaCorner(units, b.head<2>()).norm() - 100, 1e-3);
+    const AskedArea area = AreaInPlan(units, {{a.head<2>(), b.head<2>()}});
+    EXPECT_LT(area.rings[0][0].norm(), 1e-3);
+    EXPECT_LT((area.rings[0][1] - Eigen::Vector2d(0, 100)).norm(), 1e-3);
   }
 }
 

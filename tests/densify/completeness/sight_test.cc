@@ -40,6 +40,14 @@ TEST(MeasurePicture, FlatHasNoTexture) {
   EXPECT_EQ(facts.sharpness, 0);
 }
 
+TEST(MeasurePicture, LightThatRisesEvenlyIsNoTexture) {
+  GrayImage luma(48, 32);
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 48; ++x) luma.At(x, y) = static_cast<uint8_t>(20 + 3 * x + 2 * y);
+  }
+  for (const uint8_t texture : MeasurePicture(luma, {}).texture) EXPECT_EQ(texture, 0);
+}
+
 TEST(MeasurePicture, ExposureAndMask) {
   GrayImage luma = Noise(64, 32, 1), mask(64, 32, 1, 255);
   for (int y = 0; y < 16; ++y) {
@@ -96,7 +104,7 @@ class Causes : public testing::Test {
   GapCause Of(const std::vector<Sight>& sights) { return CauseOf(context_, sights, {0, 0, 0}); }
 
   LostSight lost_{{}, {}, 1};
-  SightContext context_{nullptr, nullptr, nullptr, &lost_, 1, 2, 10};
+  SightContext context_{nullptr, nullptr, nullptr, &lost_, 1, 2};
 };
 
 TEST_F(Causes, InOrder) {
@@ -105,12 +113,20 @@ TEST_F(Causes, InOrder) {
   EXPECT_EQ(Of({See(K::kGood, 0)}), GapCause::kImagedOnce);
   EXPECT_EQ(Of({See(K::kGood, 0), See(K::kGood, 1)}), GapCause::kSmallParallax);
   EXPECT_EQ(Of({See(K::kGood, 0), See(K::kGood, 9)}), GapCause::kViewsDisagree);
-  EXPECT_EQ(Of({See(K::kGood, 0, 3), See(K::kGood, 9, 4)}), GapCause::kNoTexture);
+  EXPECT_EQ(MedianTexture({See(K::kGood, 0, 3), See(K::kBad, 1, 9), See(K::kGood, 9, 4)}), 4);
+  EXPECT_EQ(MedianTexture({See(K::kGood, 0, 3)}), kUnknownTexture);
   EXPECT_EQ(Of({See(K::kGood, 0), See(K::kBad, 9)}), GapCause::kBadPicture);
   EXPECT_EQ(Of({See(K::kGood, 0), See(K::kHidden, 9)}), GapCause::kOccluded);
   EXPECT_EQ(Of({See(K::kHidden, 9)}), GapCause::kOccluded);
   EXPECT_EQ(Of({See(K::kMasked, 9), See(K::kMasked, 0)}), GapCause::kOutOfArea);
-  EXPECT_EQ(SecondGsd({See(K::kGood, 0), See(K::kBad, 1), See(K::kGood, 9)}), 10);
+  // GSD 1 + angle. Of 0, 9 and 4 degrees: 10 over 9, 5 over 4, 10 over 5 degrees.
+  EXPECT_EQ(PairGsd({See(K::kGood, 0), See(K::kGood, 9), See(K::kGood, 4)}, 2), 10);
+  // Beyond 11.5 degrees parallax counts no more: 31 over 11.5, 14 over 11.5.
+  EXPECT_EQ(PairGsd({See(K::kGood, 0), See(K::kGood, 30), See(K::kGood, 13)}, 2), 14);
+  EXPECT_EQ(PairGsd({See(K::kGood, 0), See(K::kBad, 9), See(K::kGood, 1)}, 2), std::nullopt);
+  EXPECT_EQ(NearestGsd({See(K::kMasked, 0), See(K::kHidden, 3), See(K::kGood, 9)}), 4);
+  EXPECT_FALSE(IsSeenFromTwoSides({See(K::kGood, 0), See(K::kHidden, 9), See(K::kBad, 1)}, 2));
+  EXPECT_TRUE(IsSeenFromTwoSides({See(K::kGood, 0), See(K::kBad, 9)}, 2));
   EXPECT_NEAR(ParallaxDeg({See(K::kGood, 0), See(K::kGood, 9), See(K::kBad, 20)}), 9, 1e-6);
 }
 

@@ -5,8 +5,9 @@
 #include <set>
 
 #include "densify/completeness/gaps/gap_regions.h"
+#include "densify/completeness/gaps/merge_gaps.h"
 #include "densify/completeness/surface/asked_area.h"
-#include "densify/completeness/surface/map_frame.h"
+#include "densify/completeness/surface/plan_frame.h"
 #include "densify/completeness/surface/plane_pyramid.h"
 #include "densify/completeness/surface/tiled_grid.h"
 
@@ -49,15 +50,7 @@ TEST(PlanePyramid, PlaneThroughAHole) {
   EXPECT_EQ(PlanePyramid(1).At(3, 4).height, 0);
 }
 
-TEST(MapFrame, LevelledWorldIsTheMap) {
-  std::vector<Eigen::Vector3d> points;
-  for (int i = 0; i < 100; ++i) points.emplace_back(i % 10, i / 10, 0.1 * (i % 3) + 0.1 * (i % 10));
-  EXPECT_TRUE(FitMapFrame(points, {{5, 5, 4}}).IsWorld());
-  // Seen from below: up is down.
-  EXPECT_FALSE(FitMapFrame(points, {{5, 5, -4}}).IsWorld());
-}
-
-TEST(MapFrame, SidesAreRightHanded) {
+TEST(PlanFrame, SidesAreRightHanded) {
   for (int i = 0; i < kNumSides; ++i) {
     const Eigen::Matrix3d side = SideFromMap(static_cast<Side>(i));
     EXPECT_NEAR(side.determinant(), 1, 1e-12);
@@ -79,6 +72,12 @@ TEST(AskedArea, HolesAndCrossings) {
   EXPECT_FALSE(CrossesItself(square));
   EXPECT_TRUE(CrossesItself({{0, 0}, {4, 4}, {4, 0}, {0, 4}}));
   EXPECT_DOUBLE_EQ(SignedArea(square), 16);
+  // 17 with the hole, twice.
+  EXPECT_FALSE(area.IsTooLarge(std::sqrt(18 / kMaxAskedCells)));
+  EXPECT_TRUE(area.IsTooLarge(std::sqrt(16 / kMaxAskedCells)));
+  // Small, but far off.
+  const double far = 2 * kMaxAskedCells;
+  EXPECT_TRUE((AskedArea{{{{far, 0}, {far + 1, 0}, {far, 1}}}}.IsTooLarge(1)));
 }
 
 using Cells = std::vector<std::pair<int, int>>;
@@ -129,6 +128,42 @@ TEST(TraceCells, AnyShapeKeepsItsAreaAndItsCells) {
       }
     }
   }
+}
+
+GapRegion Square(int x0, int y0, int side, GapCause cause) {
+  GapRegion region;
+  region.cause = cause;
+  for (int y = y0; y < y0 + side; ++y) {
+    for (int x = x0; x < x0 + side; ++x) region.cells.emplace_back(x, y);
+  }
+  region.area = side * side;
+  region.rings = TraceCells(region.cells);
+  return region;
+}
+
+TEST(MergeIntoPasses, WhatOnePassPhotographsIsOneGap) {
+  PassPlan plan;
+  plan.across = plan.along = 40;  // cells; a hundredth of a picture: 16
+  const std::vector<GapRegion> regions = {
+      Square(0, 0, 10, GapCause::kImagedOnce),
+      Square(14, 0, 5, GapCause::kImagedOnce),    // within half a picture of the first
+      Square(0, 14, 5, GapCause::kNoTexture),     // another cause: a gap of its own
+      Square(0, 33, 3, GapCause::kNoTexture),     // a speck beside a larger one of its cause
+      Square(-6, 0, 3, GapCause::kOccluded),      // a speck beside one of another cause
+      Square(200, 0, 3, GapCause::kImagedOnce),   // a speck far from all
+      Square(300, 0, 50, GapCause::kImagedOnce),  // larger than a picture, both
+      Square(352, 0, 45, GapCause::kImagedOnce),
+  };
+  const PassRegions merged = MergeIntoPasses(regions, plan, 1);
+  EXPECT_DOUBLE_EQ(merged.unlisted_area, 9);
+  ASSERT_EQ(merged.regions.size(), 4u);
+  EXPECT_DOUBLE_EQ(merged.regions[0].area, 2500);
+  EXPECT_DOUBLE_EQ(merged.regions[1].area, 2025);
+  EXPECT_DOUBLE_EQ(merged.regions[2].area, 100 + 25 + 9);
+  EXPECT_EQ(merged.regions[2].rings.size(), 3u);
+  EXPECT_DOUBLE_EQ(AreaOfRings(merged.regions[2].rings), 100 + 25 + 9);
+  EXPECT_DOUBLE_EQ(merged.regions[3].area, 25 + 9);
+  EXPECT_EQ(merged.regions[3].cause, GapCause::kNoTexture);
 }
 
 }  // namespace

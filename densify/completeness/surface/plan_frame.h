@@ -2,22 +2,16 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
 namespace colmap_seapoint {
 
-// Rows: right, ahead, up; right-handed, orthonormal. Same origin and unit as the world.
-struct MapFrame {
+// The plan that the survey is drawn on. Rows: right, ahead, up; right-handed, orthonormal. Same
+// origin and unit as the world.
+struct PlanFrame {
   Eigen::Matrix3d map_from_world = Eigen::Matrix3d::Identity();
   // Whether it is the world itself: its z points up.
   bool IsWorld() const { return map_from_world.isIdentity(0); }
 };
-
-// Up is across the best plane of the points, towards the cameras. Where the world's z is up within
-// 20 degrees of that, the world is the map. Else, where z lies in the plane within 20 degrees (a
-// wall in a levelled world), ahead is z's part in the plane. `points` holds one at least.
-MapFrame FitMapFrame(const std::vector<Eigen::Vector3d>& points,
-                     const std::vector<Eigen::Vector3d>& camera_centers);
 
 // A box unfolded: a wall is looked at from its side, so that it does not vanish in the plan.
 enum class Side { kTop, kRight, kLeft, kAhead, kBack, kUnder };

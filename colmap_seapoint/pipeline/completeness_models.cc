@@ -1,0 +1,96 @@
+#include "colmap_seapoint/pipeline/completeness_models.h"
+
+#include <filesystem>
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/io/files/content_hash.h"
+#include "colmap_seapoint/io/files/run_report_json.h"
+#include "colmap_seapoint/io/image/picture_masks.h"
+#include "colmap_seapoint/pipeline/completeness.h"
+#include "densify/completeness/assess_completeness.h"
+
+namespace colmap_seapoint {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr char kPrefix[] = "completeness_";
+
+struct Assessment {
+  std::string answer;
+  RunReport run;
+};
+
+void to_json(nlohmann::ordered_json& json, const Assessment& assessment) {
+  json = {{"answer", assessment.answer}, {"run", assessment.run}};
+}
+
+void from_json(const nlohmann::ordered_json& json, Assessment& assessment) {
+  assessment = {json.at("answer").get<std::string>(), json.at("run").get<RunReport>()};
+}
+
+CompletenessReporterOptions ReporterOptions(const AutomaticReconstructorOptions& options,
+                                            const Workspace& workspace, const ModelSummary& model) {
+  CompletenessReporterOptions reporter;
+  reporter.image_path = workspace.images.string();
+  reporter.input_path = model.path.string();
+  reporter.cloud_path = model.cloud_path.string();
+  reporter.output_path = (workspace.report / "completeness" / model.name).string();
+  reporter.mask_path = options.reader.mask_path;
+  reporter.completeness = options.completeness;
+  if (reporter.completeness.step == 0) reporter.completeness.step = options.densification.step;
+  reporter.run = options.run;
+  return reporter;
+}
+
+// The cloud tells of most; the pictures also of those that are in no model.
+std::string InputsOf(const CompletenessReporterOptions& reporter, const ModelSummary& model,
+                     const std::string& mapper_fingerprint, const RunReport& report) {
+  std::string text = mapper_fingerprint + model.name + "," + model.scaling_fingerprint +
+                     HashFile(reporter.cloud_path) +
+                     PictureMasks(reporter.mask_path).Fingerprint(model.pictures) +
+                     OptionsFingerprint(OptionValues(reporter.completeness));
+  for (const RunReport::Input& input : report.inputs) text += "\n" + input.name + " " + input.hash;
+  return text;
+}
+
+std::string AnswerOf(const CompletenessReporterOptions& reporter, const Stage& stage,
+                     const std::string& number, WorkspaceState* state, RunReport* report) {
+  try {
+    Assessment done = RunStage<Assessment>(state, stage, [&]() -> StageOutput<Assessment> {
+      CompletenessReport made = ReportCompleteness(reporter);
+      return {{made.answer, made.run}, FilesOfOurs(reporter.output_path)};
+    });
+    // What could not be read is named by the stages before.
+    if (!done.run.left_out.empty()) state->Forget(stage.name);
+    for (RunReport::Stage& part : done.run.stages) {
+      part.name += " " + number;
+      report->stages.push_back(std::move(part));
+    }
+    return done.answer;
+  } catch (const Error& e) {
+    LogWarning(std::string("completeness is not known: ") + e.what());
+    return std::string("not known: ") + e.what();
+  }
+}
+
+}  // namespace
+
+void ReportCompletenessOfModels(const AutomaticReconstructorOptions& options,
+                                const Workspace& workspace, const std::string& mapper_fingerprint,
+                                WorkspaceState* state, std::vector<ModelSummary>* models,
+                                RunReport* report) {
+  const fs::path folder = workspace.report / "completeness";
+  RemoveStaleStages(kPrefix, options.report_completeness ? models->size() : 0, folder, state);
+  if (!options.report_completeness) return;
+  for (ModelSummary& model : *models) {
+    if (model.densification.points == 0) continue;
+    const CompletenessReporterOptions reporter = ReporterOptions(options, workspace, model);
+    const Stage stage = {kPrefix + model.name, kCompletenessVersion,
+                         InputsOf(reporter, model, mapper_fingerprint, *report),
+                         "The report in " + reporter.output_path + " is there already"};
+    model.completeness = AnswerOf(reporter, stage, model.name, state, report);
+  }
+}
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,149 @@
+#include "densify/completeness/survey_limits.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "densify/completeness/judge_ground.h"
+
+namespace colmap_seapoint {
+namespace {
+
+constexpr double kBinRatio = 1.1;  // from one bin of GSD to the next
+constexpr int kNumBins = 64;
+constexpr int kFirstFar = 5;  // the bin of 1.5 times the survey's GSD
+constexpr int kWindow = 3;    // bins that are looked at together
+constexpr double kMostlyNothing = 0.5;
+constexpr double kMinAreaShare = 0.005;  // of all, in a window: less tells nothing
+constexpr double kFarForOne = 2;         // of the survey's GSD
+constexpr double kAsGood = 0.9, kOfMedian = 0.25;
+constexpr int kTextureReach = 2;  // both ways, of the textures that are looked at together
+constexpr double kFew = 0.002;    // of all
+
+struct Bin {
+  double all = 0, covered = 0;  // units^2
+  double Share() const { return all > 0 ? covered / all : 0; }
+};
+
+// What two pictures see from two sides: visit(cell, area that it stands for).
+template <typename Visitor>
+void ForEachPairCell(const GroundLayer& layer, const Visitor& visit) {
+  layer.cells.ForEach([&](int x, int y, const GroundCell& cell) {
+    if (!cell.is_expected || !cell.has_pair) return;
+    // Of the cells that were covered before their pictures were looked at, these are known of a
+    // sample.
+    const bool is_of_sample = cell.is_covered && !cell.is_from_afar;
+    if (is_of_sample && !IsSampledCell(x, y)) return;
+    visit(cell, (is_of_sample ? kSampleCells * kSampleCells : 1) * double{cell.area});
+  });
+}
+
+// By GSD: bin 0 holds all up to the survey's own.
+std::array<Bin, kNumBins> CoverageByGsd(double survey_gsd, const GroundLayer& top) {
+  std::array<Bin, kNumBins> bins;
+  ForEachPairCell(top, [&](const GroundCell& cell, double area) {
+    const double at = std::ceil(std::log(cell.gsd / survey_gsd) / std::log(kBinRatio));
+    Bin& bin = bins[static_cast<size_t>(std::clamp(at, 0.0, kNumBins - 1.0))];
+    bin.all += area;
+    bin.covered += cell.is_covered ? area : 0;
+  });
+  return bins;
+}
+
+using TextureBins = std::array<Bin, 255>;
+
+TextureBins CoverageByTexture(const GroundLayer& top) {
+  TextureBins bins;
+  ForEachPairCell(top, [&](const GroundCell& cell, double area) {
+    if (cell.texture >= bins.size()) return;
+    Bin& bin = bins[cell.texture];
+    bin.all += area;
+    bin.covered += cell.is_covered ? area : 0;
+  });
+  return bins;
+}
+
+template <typename Bins>
+Bin Sum(const Bins& bins, int from, int to) {
+  Bin sum;
+  for (int k = std::max(0, from); k < std::min(to, static_cast<int>(bins.size())); ++k) {
+    sum.all += bins[static_cast<size_t>(k)].all;
+    sum.covered += bins[static_cast<size_t>(k)].covered;
+  }
+  return sum;
+}
+
+// Texture of the median of what is covered.
+int MedianCovered(const TextureBins& bins) {
+  const double covered = Sum(bins, 0, static_cast<int>(bins.size())).covered;
+  double below = 0;
+  for (size_t t = 0; t < bins.size(); ++t) {
+    below += bins[t].covered;
+    if (2 * below > covered) return static_cast<int>(t);
+  }
+  return 0;
+}
+
+}  // namespace
+
+double LimitOfSight(double survey_gsd, const Ground& ground) {
+  const auto top = ground.layers.find({Side::kTop, 0});
+  if (top == ground.layers.end()) return std::numeric_limits<double>::infinity();
+  const std::array<Bin, kNumBins> bins = CoverageByGsd(survey_gsd, top->second);
+  const double all = Sum(bins, 0, kNumBins).all;
+  for (int k = kFirstFar; k + kWindow <= kNumBins; ++k) {
+    const Bin window = Sum(bins, k, k + kWindow);
+    if (window.all < kMinAreaShare * all) continue;
+    if (window.Share() < kMostlyNothing * bins[0].Share()) {
+      return survey_gsd * std::pow(kBinRatio, k - 1);
+    }
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+void LeaveOutBackground(double survey_gsd, Ground* ground) {
+  const double limit = LimitOfSight(survey_gsd, *ground);
+  const double limit_for_one = std::min(limit, kFarForOne * survey_gsd);
+  for (auto& [key, layer] : ground->layers) {
+    layer.cells.ForEach([&](int, int, GroundCell& cell) {
+      if (cell.is_covered && !cell.is_from_afar) return;
+      if (cell.gsd > (cell.has_pair ? limit : limit_for_one)) cell.is_expected = false;
+    });
+  }
+}
+
+double ReliableTexture(const Ground& ground) {
+  const auto top = ground.layers.find({Side::kTop, 0});
+  if (top == ground.layers.end()) return 0;
+  const TextureBins bins = CoverageByTexture(top->second);
+  const int num_bins = static_cast<int>(bins.size());
+  const double few = kFew * Sum(bins, 0, num_bins).all;
+  const auto about = [&](int t) { return Sum(bins, t - kTextureReach, t + kTextureReach + 1); };
+  const int median = MedianCovered(bins);
+  double best = 0;
+  for (int t = 0; t < num_bins; ++t) {
+    if (about(t).all > few) best = std::max(best, about(t).Share());
+  }
+  const auto is_reliable = [&](int t) {
+    return about(t).all <= few || about(t).Share() >= kAsGood * best;
+  };
+  int reliable = 0;
+  for (int t = 0; t <= median + kTextureReach; ++t) {
+    if (!is_reliable(t)) reliable = t + 1;
+  }
+  return std::max<double>(reliable, kOfMedian * median);
+}
+
+void TellWhatLacksTexture(Ground* ground) {
+  const double reliable = ReliableTexture(*ground);
+  for (auto& [key, layer] : ground->layers) {
+    layer.cells.ForEach([&](int, int, GroundCell& cell) {
+      if (cell.cause == GapCause::kViewsDisagree && cell.texture < reliable) {
+        cell.cause = GapCause::kNoTexture;
+      }
+    });
+  }
+}
+
+}  // namespace colmap_seapoint

@@ -1,0 +1,30 @@
+// How far, and with how little texture, a survey could measure: what it has covered tells that.
+#pragma once
+
+#include "densify/completeness/surface/ground.h"
+
+namespace colmap_seapoint {
+
+// GSD of the nearest picture, units a pixel, beyond which the survey's pictures mostly gave
+// nothing, because that is too far away in the water, or seen at too grazing an angle: where less
+// than half as much of what two pictures see is covered as where it is `survey_gsd` or less.
+// Infinite where that is nowhere so. At least 1.5 survey_gsd. Of the top layer, after JudgeGround.
+double LimitOfSight(double survey_gsd, const Ground& ground);
+
+// A camera that looks ahead shows much that nobody meant to measure. Beyond the limit of sight
+// nothing is expected any more, nor where no two pictures see a place from two sides and the
+// nearest has twice the survey's GSD or more. Such cells keep their cause (outline.h).
+void LeaveOutBackground(double survey_gsd, Ground* ground);
+
+// Texture, as in PictureFacts, from which on this survey's places were matched reliably: of what
+// two pictures see with less, less than nine tenths as much is covered as of the texture that was
+// matched best. Not above the median of what is covered, for most of what is can be matched; a
+// quarter of it at the least, for of what hardly any place shows nothing is known. 0 where the
+// pictures were not looked at. Of the top layer.
+double ReliableTexture(const Ground& ground);
+
+// Where two good pictures see a place from two sides, and it is missing all the same: kNoTexture
+// below that texture; with more they disagree. That brightness differs tells nothing: lamps move.
+void TellWhatLacksTexture(Ground* ground);
+
+}  // namespace colmap_seapoint
