@@ -9,7 +9,6 @@
 namespace colmap_seapoint {
 namespace {
 
-constexpr int kSide = TiledGrid<GroundCell>::kSide;
 constexpr int kMinBlock = 4;             // cells
 constexpr double kBlocksARadius = 24;    // the disc is drawn that finely
 constexpr int64_t kMaxBlocks = 1 << 24;  // of the box around all; larger boxes get larger blocks
