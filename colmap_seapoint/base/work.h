@@ -21,6 +21,7 @@ enum class Work : int {
   kDensification,  // steps of the densifier
   kMaps,           // depth maps
   kOrthomosaic,    // pictures that a map is made of
+  kCompleteness,   // pictures looked at for what is missing, and the cloud twice as many steps
   kOther,          // nothing that is planned
 };
 inline constexpr int kNumWorks = static_cast<int>(Work::kOther) + 1;

@@ -30,7 +30,8 @@ constexpr double kMinRatioSeconds = 0.5;     // for the history
 constexpr Work kPlanned[] = {Work::kIntake,        Work::kPictures,   Work::kLookAlikes,
                              Work::kPairs,         Work::kMarkers,    Work::kTiltedViews,
                              Work::kRegistration,  Work::kRefinement, Work::kJoining,
-                             Work::kDensification, Work::kMaps,       Work::kOrthomosaic};
+                             Work::kDensification, Work::kMaps,       Work::kOrthomosaic,
+                             Work::kCompleteness};
 
 // A hard survey takes them ten times longer, which says nothing of the machine.
 bool IsMappers(Work work) { return work == Work::kRegistration || work == Work::kRefinement; }

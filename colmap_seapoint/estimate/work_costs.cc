@@ -28,6 +28,9 @@ constexpr double kRectifiedMegapixelSeconds = 0.06;
 constexpr double kMapSeconds = 0.05;
 constexpr double kOrthomosaicSeconds = 0.01;
 constexpr double kOrthomosaicMegapixelSeconds = 0.19;
+constexpr double kStepsOfCompleteness = 3;  // of a picture: itself, and twice its part of the cloud
+constexpr double kCompletenessSeconds = 0.01;
+constexpr double kCompletenessMegapixelSeconds = 0.14;
 
 // How many threads are kept busy, of those that there are. The mapper has one.
 double Busy(int num_threads) { return 0.15 + 0.85 * std::max(num_threads, 1); }
@@ -68,6 +71,11 @@ OfWork<WorkCost> ExpectedCosts(const JobSize& size, const OfWork<double>& machin
   if (size.makes_map) {
     set(Work::kOrthomosaic, n,
         (kOrthomosaicSeconds + kOrthomosaicMegapixelSeconds * megapixels) / threads);
+  }
+  if (size.reports_completeness) {
+    set(Work::kCompleteness, kStepsOfCompleteness * n,
+        (kCompletenessSeconds + kCompletenessMegapixelSeconds * megapixels) / kStepsOfCompleteness /
+            threads);
   }
   return costs;
 }

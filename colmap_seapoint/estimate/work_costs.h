@@ -24,6 +24,7 @@ struct JobSize {
   bool finds_look_alikes = false;
   bool writes_maps = false;
   bool makes_map = false;
+  bool reports_completeness = false;
   bool finds_markers = false;
   // To be made into pictures before all else, of one kind or the other.
   int64_t num_copies = 0;         // pictures in HEIC and RAW

@@ -103,14 +103,37 @@ PictureFacts ReadFacts(const CompletenessReporterOptions& options, const Picture
   return MeasurePicture(luma, masks.Decode(name, masks.Open(name), luma.width, luma.height));
 }
 
+// A step a picture that is looked at, and as many each time that the cloud is read.
+class AssessmentProgress {
+ public:
+  AssessmentProgress(size_t num_pictures, uint64_t num_points)
+      : num_pictures_(static_cast<double>(num_pictures)),
+        num_points_(static_cast<double>(num_points)),
+        progress_("Looking for what is missing, steps", static_cast<int64_t>(3 * num_pictures), 0,
+                  Work::kCompleteness) {}
+
+  void LookedAtPictures(int64_t num) { progress_.Update(num); }
+  void BeginCloud() { ++num_readings_; }
+  void ReadPoints(uint64_t num) {
+    progress_.Update(static_cast<int64_t>(
+        num_pictures_ * (num_readings_ + static_cast<double>(num) / num_points_)));
+  }
+  void Finish() { progress_.Finish(); }
+
+ private:
+  double num_pictures_, num_points_;
+  int num_readings_ = 0;
+  Progress progress_;
+};
+
 // By image_idx. A picture that cannot be read is named, and counts as a bad one.
 std::vector<PictureFacts> MeasurePictures(const CompletenessReporterOptions& options,
-                                          const SparseModel& model, RunReport* report) {
+                                          const SparseModel& model, AssessmentProgress* progress,
+                                          RunReport* report) {
   std::vector<PictureFacts> facts(model.images.size());
   if (options.image_path.empty()) return facts;
   const PictureMasks masks(options.mask_path);
   std::vector<std::string> problems(model.images.size());
-  Progress progress("Looking at the pictures", static_cast<int64_t>(facts.size()));
   std::mutex mutex;
   int64_t num_done = 0;
   ParallelFor(options.run.num_threads, static_cast<int64_t>(facts.size()), [&](int64_t index) {
@@ -121,9 +144,8 @@ std::vector<PictureFacts> MeasurePictures(const CompletenessReporterOptions& opt
       problems[i] = e.Finding();
     }
     const std::lock_guard<std::mutex> lock(mutex);
-    progress.Update(++num_done);
+    progress->LookedAtPictures(++num_done);
   });
-  progress.Finish();
   for (size_t i = 0; i < problems.size(); ++i) {
     if (problems[i].empty()) continue;
     LeaveOut(model.images[i].name, problems[i], report);
@@ -139,12 +161,18 @@ std::vector<PictureFacts> MeasurePictures(const CompletenessReporterOptions& opt
   return facts;
 }
 
-void ReadPoints(const std::string& path, const std::function<void(const ConfidentPoint&)>& take) {
+void ReadPoints(const std::string& path, AssessmentProgress* progress,
+                const std::function<void(const ConfidentPoint&)>& take) {
+  constexpr uint64_t kPointsOfUpdate = 100000;
   CloudReader reader(path);
   CloudVertex vertex;
+  uint64_t num_read = 0;
+  progress->BeginCloud();
   while (reader.Next(&vertex)) {
     take({{vertex.xyz, vertex.normal.cast<double>()}, vertex.confidence});
+    if (++num_read % kPointsOfUpdate == 0) progress->ReadPoints(num_read);
   }
+  progress->ReadPoints(num_read);
 }
 
 void CheckResult(const CompletenessReporterOptions& options, const CompletenessResult& result) {
@@ -176,16 +204,18 @@ CompletenessResult Assess(const CompletenessReporterOptions& options, const Spar
     throw Error(options.cloud_path, "the cloud holds no points", "check --cloud_path");
   }
   report->points = static_cast<int64_t>(input.num_points);
-  input.for_each_point = [&](const auto& take) { ReadPoints(options.cloud_path, take); };
+  AssessmentProgress progress(model.images.size(), input.num_points);
+  input.for_each_point = [&](const auto& take) { ReadPoints(options.cloud_path, &progress, take); };
   input.asked = ReadArea(options, units.value_or(ModelUnits()));
   input.frame_of = [&](const auto& sample) { return FindPlan(options, model, units, sample); };
   input.lost = LostPictures(options, model);
   FormerReport former = ReadFormerReport(fs::path(options.output_path) / "completeness.json");
   input.former = std::move(former.gaps);
   input.last_id = former.last_id;
-  input.facts = MeasurePictures(options, model, report);
+  input.facts = MeasurePictures(options, model, &progress, report);
   CompletenessResult result =
       AssessCompleteness(input, options.completeness, options.run.num_threads);
+  progress.Finish();
   CheckResult(options, result);
   return result;
 }

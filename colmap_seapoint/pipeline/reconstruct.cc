@@ -85,6 +85,7 @@ JobSize SizeOf(const Options& options, int64_t num_pictures, double megapixels) 
   size.step = options.densification.step;
   size.writes_maps = options.densification.write_maps;
   size.makes_map = options.makes_map;
+  size.reports_completeness = options.report_completeness;
   size.finds_markers = !FamiliesToFind(options.scale).empty();
   size.num_threads = EffectiveNumThreads(options.run.num_threads);
   return size;
@@ -121,6 +122,7 @@ OfWork<bool> DoneBefore(const Stage& database, const WorkspaceState& state) {
   }
   done[Work::kDensification] = done[Work::kMaps] = state.Read("dense_0").has_value();
   done[Work::kOrthomosaic] = state.Read("map_0").has_value();
+  done[Work::kCompleteness] = state.Read("completeness_0").has_value();
   return done;
 }
 

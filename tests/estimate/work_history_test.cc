@@ -49,12 +49,12 @@ TEST_F(WorkHistory, IsTheMedianOfTheLastRuns) {
 
 TEST_F(WorkHistory, DamageIsNoError) {
   fs::create_directories(path_.parent_path());
-  static_assert(kNumWorks == 13, "a row of the last text has a value for each");
+  static_assert(kNumWorks == 14, "a row of the last text has a value for each");
   for (const char* text :
        {"", "{", "[]", "{\"ratios_of_runs\": 3}", "{\"ratios_of_runs\": [3, []]}",
         "{\"ratios_of_runs\": [[1e999, -1, \"x\", null, 0, 1e300, 1, 1]]}",
         "{\"ratios_of_runs\": [[-1, \"x\", null, 0, 1e300, -1, \"x\", null, 0, 1e300, 1, 1, "
-        "1]]}"}) {
+        "1, 1]]}"}) {
     WriteTextFile(path_, text);
     for (const double ratio : ReadMachineRatios(path_).values) {
       EXPECT_GT(ratio, 0) << text;
