@@ -70,21 +70,6 @@ Json GapProperties(const Gap& gap, const SparseModel& model, const GapPlaces& pl
           {"pictures", std::move(pictures)}};
 }
 
-// All corners of all passes, in the order in which they are swum.
-std::vector<Eigen::Vector3d> RouteCorners(const CompletenessResult& result) {
-  std::vector<Eigen::Vector3d> corners;
-  for (const RouteStop& stop : result.route) {
-    const std::vector<Eigen::Vector3d>& pass =
-        result.gaps[static_cast<size_t>(stop.pass)].pass.corners;
-    if (stop.is_reversed) {
-      corners.insert(corners.end(), pass.rbegin(), pass.rend());
-    } else {
-      corners.insert(corners.end(), pass.begin(), pass.end());
-    }
-  }
-  return corners;
-}
-
 std::string Number(double value) {
   char text[32];
   std::snprintf(text, sizeof(text), "%.9g", value);
@@ -129,6 +114,20 @@ bool ParseLayerName(const std::string& name, LayerKey* layer) {
     return true;
   }
   return false;
+}
+
+std::vector<Eigen::Vector3d> RouteCorners(const CompletenessResult& result) {
+  std::vector<Eigen::Vector3d> corners;
+  for (const RouteStop& stop : result.route) {
+    const std::vector<Eigen::Vector3d>& pass =
+        result.gaps[static_cast<size_t>(stop.pass)].pass.corners;
+    if (stop.is_reversed) {
+      corners.insert(corners.end(), pass.rbegin(), pass.rend());
+    } else {
+      corners.insert(corners.end(), pass.begin(), pass.end());
+    }
+  }
+  return corners;
 }
 
 std::string GapsGeoJson(const CompletenessResult& result, const SparseModel& model,

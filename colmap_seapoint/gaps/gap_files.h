@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "colmap_seapoint/gaps/gap_places.h"
 #include "densify/completeness/assess_completeness.h"
@@ -22,5 +23,8 @@ std::string GapsGeoJson(const CompletenessResult& result, const SparseModel& mod
 // A row a gap, in order of rank.
 std::string GapsCsv(const CompletenessResult& result, const SparseModel& model,
                     const GapPlaces& places);
+
+// All corners of all passes, in the order in which they are swum; world.
+std::vector<Eigen::Vector3d> RouteCorners(const CompletenessResult& result);
 
 }  // namespace colmap_seapoint

@@ -13,6 +13,7 @@
 #include "colmap_seapoint/gaps/answer_line.h"
 #include "colmap_seapoint/gaps/completeness_json.h"
 #include "colmap_seapoint/gaps/gap_files.h"
+#include "colmap_seapoint/gaps/gap_kml.h"
 #include "colmap_seapoint/gaps/gap_map.h"
 #include "colmap_seapoint/io/cloud/ply_reader.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
@@ -234,6 +235,16 @@ std::string MapName(const LayerKey& layer) {
   return name;
 }
 
+// Where the model is georeferenced; else that of an earlier run goes.
+void WriteKml(const CompletenessResult& result, const GapPlaces& places, OutputFolder* folder) {
+  if (!places.IsGeographic()) {
+    if (folder->IsOurs("gaps.kml")) folder->Remove("gaps.kml");
+    return;
+  }
+  folder->Claim({"gaps.kml"});
+  WriteTextFile(folder->Path() / "gaps.kml", GapsKml(result, places));
+}
+
 // Of layers that an earlier run has found gaps in.
 void RemoveFormerMaps(OutputFolder* folder) {
   for (const fs::path& file : FilesOfOurs(folder->Path())) {
@@ -293,6 +304,7 @@ CompletenessReport ReportCompleteness(const CompletenessReporterOptions& options
     const fs::path& output = folder.Path();
     WriteTextFile(output / "gaps.geojson", GapsGeoJson(result, model, places));
     WriteTextFile(output / "gaps.csv", GapsCsv(result, model, places));
+    WriteKml(result, places, &folder);
     WriteMaps(result, places.Unit(), &folder);
     WriteTextFile(output / "completeness.json", CompletenessJson(result, model, places));
     done.answer = CompletenessLine(result, model, places);

@@ -29,9 +29,9 @@ struct CompletenessReport {
   std::string answer;  // one line
 };
 
-// Writes completeness.json, gaps.geojson, gaps.csv, map.png (map_<layer>.png of other layers with
-// gaps) and run.json. Pictures of the model that cannot be read are left out. Throws Error when
-// cloud, model, pictures and area do not belong together.
+// Writes completeness.json, gaps.geojson, gaps.csv, gaps.kml (georeferenced), map.png
+// (map_<layer>.png of other layers with gaps) and run.json. Pictures of the model that cannot be
+// read are left out. Throws Error when cloud, model, pictures and area do not belong together.
 CompletenessReport ReportCompleteness(const CompletenessReporterOptions& options);
 
 // The same; the answer on stdout.

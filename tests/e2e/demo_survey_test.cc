@@ -59,7 +59,8 @@ TEST(DemoSurvey, ReconstructedThroughTheRealMapper) {
   const fs::path other = folder / "two_threads";
   ASSERT_EQ(Reconstruct(survey / "images", other, 2).exit_code, 0);
   for (const char* name : {"sparse/0/cameras.bin", "sparse/0/images.bin", "sparse/0/points3D.bin",
-                           "dense/0/fused.ply", "dense/0/fused.ply.vis"}) {
+                           "dense/0/fused.ply", "dense/0/fused.ply.vis", "map/0/orthomosaic.tif",
+                           "map/0/dem.tif", "map/0/source.tif", "map/0/hillshade.png"}) {
     EXPECT_TRUE(ReadBytes(workspace / name) == ReadBytes(other / name)) << name;
   }
 }

@@ -39,6 +39,9 @@ TEST(Needs, GrowWithMapsAndFallWithTheStep) {
   size.writes_maps = true;
   EXPECT_GT(ExpectedNeeds(size).disk_bytes, plain);
   size.writes_maps = false;
+  size.makes_map = true;
+  EXPECT_GT(ExpectedNeeds(size).disk_bytes, plain);
+  size.makes_map = false;
   size.step = 1;
   EXPECT_GT(ExpectedNeeds(size).disk_bytes, 5 * plain);
   EXPECT_EQ(ExpectedNeeds(JobSize()).disk_bytes, 0u);

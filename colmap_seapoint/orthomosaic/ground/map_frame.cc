@@ -21,7 +21,7 @@ constexpr double kMinThinness = 0.3;  // of a plane: its thickness over its smal
 constexpr int kPlaneRounds = 10;
 constexpr int kMedianTrials = 300;
 constexpr size_t kMedianPoints = 1000;
-constexpr double kOutlierFactor = 3.5;  // times the median distance
+constexpr double kOutlierFactor = 3.5;                     // times the median distance
 constexpr double kRadians = 3.14159265358979323846 / 180;  // a degree
 
 struct Plane {

@@ -8,6 +8,7 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/gaps/completeness_json.h"
+#include "colmap_seapoint/gaps/gap_kml.h"
 #include "colmap_seapoint/gaps/gap_map.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/gis/area_geojson.h"
@@ -75,6 +76,28 @@ TEST_F(GapFiles, Wgs84WhereGeoreferenced) {
     EXPECT_LT(area.rings[0][0].norm(), 1e-3);
     EXPECT_LT((area.rings[0][1] - Eigen::Vector2d(0, 100)).norm(), 1e-3);
   }
+}
+
+size_t CountOf(const std::string& text, const std::string& word) {
+  size_t count = 0;
+  for (size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++count;
+  return count;
+}
+
+TEST_F(GapFiles, Kml) {
+  ModelUnits enu;
+  enu.is_metric = true;
+  enu.frame = "east-north-up";
+  enu.origin = GeoPosition{43.1, 5.9, 0};
+  const std::string kml = GapsKml(result_, GapPlaces(enu, result_.ground.frame));
+  size_t num_rings = 0;
+  for (const Gap& gap : result_.gaps) num_rings += gap.outline.size();
+  EXPECT_EQ(CountOf(kml, "<Placemark>"), result_.gaps.size() + 1);
+  EXPECT_EQ(CountOf(kml, "<LinearRing>"), num_rings);
+  EXPECT_EQ(CountOf(kml, "<Polygon>"), CountOf(kml, "<outerBoundaryIs>"));
+  EXPECT_EQ(CountOf(kml, "<Polygon>"), CountOf(kml, "</Polygon>"));
+  // Longitude first; the survey begins at its origin.
+  EXPECT_NE(kml.find("<coordinates>5.9"), std::string::npos);
 }
 
 TEST_F(GapFiles, ReportIsReadBack) {

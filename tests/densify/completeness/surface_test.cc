@@ -10,6 +10,7 @@
 #include "densify/completeness/surface/plan_frame.h"
 #include "densify/completeness/surface/plane_pyramid.h"
 #include "densify/completeness/surface/tiled_grid.h"
+#include "densify/completeness/survey_limits.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -164,6 +165,57 @@ TEST(MergeIntoPasses, WhatOnePassPhotographsIsOneGap) {
   EXPECT_DOUBLE_EQ(AreaOfRings(merged.regions[2].rings), 100 + 25 + 9);
   EXPECT_DOUBLE_EQ(merged.regions[3].area, 25 + 9);
   EXPECT_EQ(merged.regions[3].cause, GapCause::kNoTexture);
+}
+
+// Rows of cells that two pictures see, the farther the larger y.
+Ground Rows(int num_rows, int last_covered_row) {
+  Ground ground;
+  GroundLayer& top = ground.LayerAt({Side::kTop, 0});
+  for (int y = 0; y < num_rows; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      GroundCell& cell = top.cells.At(x, y);
+      cell.is_expected = cell.has_pair = true;
+      cell.area = 1;
+      cell.gsd = static_cast<float>(0.5 + 0.05 * y);
+      cell.is_covered = cell.is_from_afar = y <= last_covered_row;
+    }
+  }
+  return ground;
+}
+
+TEST(LimitOfSight, WhereLessThanHalfAsMuchIsCovered) {
+  Ground ground = Rows(64, 39);  // up to a GSD of 2.45
+  const double limit = LimitOfSight(1, ground);
+  EXPECT_GT(limit, 2.45 / 1.3);
+  EXPECT_LT(limit, 2.45 * 1.1);
+  LeaveOutBackground(1, &ground);
+  const TiledGrid<GroundCell>& cells = ground.LayerAt({Side::kTop, 0}).cells;
+  EXPECT_TRUE(cells.Find(0, 20)->is_expected);
+  EXPECT_FALSE(cells.Find(0, 50)->is_expected);
+  // All is covered; or only what is near is missing.
+  EXPECT_TRUE(std::isinf(LimitOfSight(1, Rows(64, 63))));
+  EXPECT_TRUE(std::isinf(LimitOfSight(1, Rows(10, 5))));
+}
+
+TEST(ReliableTexture, NineTenthsOfTheBest) {
+  Ground ground;
+  GroundLayer& top = ground.LayerAt({Side::kTop, 0});
+  for (int y = 0; y < 64; ++y) {  // texture 10 + y: below 30 every second cell is missing
+    for (int x = 0; x < 64; ++x) {
+      GroundCell& cell = top.cells.At(x, y);
+      cell.is_expected = cell.has_pair = true;
+      cell.area = 1;
+      cell.texture = static_cast<uint8_t>(10 + y);
+      cell.is_covered = cell.is_from_afar = y >= 20 || x % 2 == 0;
+      if (!cell.is_covered) cell.cause = GapCause::kViewsDisagree;
+    }
+  }
+  top.cells.At(1, 50).is_covered = false;
+  top.cells.At(1, 50).cause = GapCause::kViewsDisagree;
+  EXPECT_NEAR(ReliableTexture(ground), 30, 3);
+  TellWhatLacksTexture(&ground);
+  EXPECT_EQ(top.cells.Find(1, 5)->cause, GapCause::kNoTexture);
+  EXPECT_EQ(top.cells.Find(1, 50)->cause, GapCause::kViewsDisagree);
 }
 
 }  // namespace
