@@ -69,8 +69,8 @@ std::string AnswerOf(const CompletenessReporterOptions& reporter, const Stage& s
     }
     return done.answer;
   } catch (const Error& e) {
-    LogWarning(std::string("completeness is not known: ") + e.what());
-    return std::string("not known: ") + e.what();
+    LeaveOut("completeness of sparse/" + number, e.what(), report);
+    return "";
   }
 }
 
