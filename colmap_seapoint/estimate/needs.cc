@@ -19,7 +19,7 @@ constexpr double kDatabaseOfPicture = 0.5e6;  // its copies for the mapper come 
 constexpr double kDatabases = 2.5;
 constexpr double kModelsOfPicture = 0.4e6;
 constexpr double kCloudPoint = 43;
-constexpr double kMapPixel = 20;         // depth, normal, undistorted picture
+constexpr double kMapPixel = 20;  // depth, normal, undistorted picture
 // Of a picture, while the map is made: 2 of them stay. A part of its pixels is in the map.
 constexpr double kOrthomosaicPixel = 6;
 constexpr double kMemoryOfProgram = 180e6;
