@@ -41,9 +41,11 @@ class Reconstruct : public StripSurvey {
 TEST_F(Reconstruct, OneStageAfterTheOther) {
   const CommandResult result = RunAutomaticReconstructor(ReconstructorOptions());
   EXPECT_TRUE(result.is_complete);
-  EXPECT_EQ(StageNames(), (Names{"feature_extractor", "exhaustive_matcher", "mapper",
-                                 "partial_densifier 0", "completeness_reporter 0"}));
-  for (const char* stage : {"database", "second_chance", "mapper", "dense_0", "completeness_0"}) {
+  EXPECT_EQ(StageNames(),
+            (Names{"feature_extractor", "exhaustive_matcher", "mapper", "partial_densifier 0",
+                   "orthomosaic 0", "completeness_reporter 0"}));
+  for (const char* stage :
+       {"database", "second_chance", "mapper", "dense_0", "map_0", "completeness_0"}) {
     EXPECT_TRUE(fs::exists(Root() / "state" / (std::string(stage) + ".json"))) << stage;
   }
   const nlohmann::json report = Report();

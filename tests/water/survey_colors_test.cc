@@ -10,9 +10,9 @@
 
 #include "colmap_seapoint/water/estimate_water.h"
 #include "colmap_seapoint/water/srgb.h"
+#include "examples/benchmarks/map/color_difference.h"
 #include "examples/survey/scene/seabed.h"
 #include "examples/survey/survey.h"
-#include "examples/benchmarks/map/color_difference.h"
 
 namespace colmap_seapoint {
 namespace {
