@@ -85,7 +85,7 @@ class CompletenessReporter : public testing::Test {
 TEST_F(CompletenessReporter, TheHoleIsFound) {
   const CliResult result = Report({"--image_path", (folder_ / "images").string()});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_NE(result.out.find("% of"), std::string::npos);
+  EXPECT_NE(result.out.find("% (+- "), std::string::npos);
   const Json answer = Answer();
   bool is_found = false;
   for (const Json& gap : answer.at("gaps")) {
