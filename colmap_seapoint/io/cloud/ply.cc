@@ -5,6 +5,7 @@
 #include <string>
 
 #include "colmap_seapoint/io/cloud/ply_reader.h"
+#include "colmap_seapoint/io/files/atomic_file.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -30,9 +31,10 @@ std::string VisPath(const std::filesystem::path& path) { return path.string() + 
 
 }  // namespace
 
-CloudWriter::CloudWriter(const std::filesystem::path& path) : ply_(path), vis_(VisPath(path)) {
-  ply_.Write(CloudHeader(0));
-  vis_.Write(&num_points_, sizeof(num_points_));
+CloudWriter::CloudWriter(const std::filesystem::path& path)
+    : ply_(std::make_unique<AtomicFile>(path)), vis_(std::make_unique<AtomicFile>(VisPath(path))) {
+  ply_->Write(CloudHeader(0));
+  vis_->Write(&num_points_, sizeof(num_points_));
 }
 
 CloudWriter::~CloudWriter() = default;
@@ -61,8 +63,8 @@ void CloudWriter::Add(const CloudPoint& point, const uint32_t* image_idxs,
 }
 
 void CloudWriter::Flush() {
-  ply_.Write(ply_buffer_.data(), ply_buffer_.size());
-  vis_.Write(vis_buffer_.data(), vis_buffer_.size());
+  ply_->Write(ply_buffer_.data(), ply_buffer_.size());
+  vis_->Write(vis_buffer_.data(), vis_buffer_.size());
   ply_buffer_.clear();
   vis_buffer_.clear();
 }
@@ -70,10 +72,10 @@ void CloudWriter::Flush() {
 void CloudWriter::Finish() {
   Flush();
   const std::string header = CloudHeader(num_points_);
-  ply_.WriteAt(0, header.data(), header.size());
-  vis_.WriteAt(0, &num_points_, sizeof(num_points_));
-  vis_.Commit();
-  ply_.Commit();
+  ply_->WriteAt(0, header.data(), header.size());
+  vis_->WriteAt(0, &num_points_, sizeof(num_points_));
+  vis_->Commit();
+  ply_->Commit();
 }
 
 std::vector<CloudPoint> ReadCloud(const std::filesystem::path& path) {

@@ -11,9 +11,9 @@
 #include <memory>
 #include <vector>
 
-#include "colmap_seapoint/io/files/atomic_file.h"
-
 namespace colmap_seapoint {
+
+class AtomicFile;
 
 struct CloudPoint {
   Eigen::Vector3f xyz = Eigen::Vector3f::Zero();
@@ -38,8 +38,8 @@ class CloudWriter {
  private:
   void Flush();
 
-  AtomicFile ply_;
-  AtomicFile vis_;
+  std::unique_ptr<AtomicFile> ply_;
+  std::unique_ptr<AtomicFile> vis_;
   std::vector<char> ply_buffer_, vis_buffer_;
   uint64_t num_points_ = 0;
   uint64_t num_skipped_ = 0;
