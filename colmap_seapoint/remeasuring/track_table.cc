@@ -17,7 +17,11 @@ struct View {
   bool holds_patch;
 };
 
-using ImageIdxs = std::unordered_map<uint32_t, size_t>;  // by image_id
+struct ImagePlace {
+  size_t idx;
+  size_t first_predicted;  // point2D_idx
+};
+using ImagePlaces = std::unordered_map<uint32_t, ImagePlace>;  // by image_id
 
 bool HoldsPatchAt(const Camera& camera, const Eigen::Vector2d& pixel) {
   return camera.InImage(pixel) &&
@@ -49,18 +53,15 @@ void MarkTwice(View* view, View* other) {
   worse->observation.role = ObservationRole::kTwice;
 }
 
-std::vector<View> ViewsOf(const SparseModel& model, const ImageIdxs& idxs,
-                          const std::map<uint32_t, size_t>& first_predicted, int point_idx,
+std::vector<View> ViewsOf(const SparseModel& model, const ImagePlaces& places, int point_idx,
                           const SparsePoint& point) {
   std::vector<View> views;
   for (const SparsePoint::TrackElement& element : point.track) {
-    const auto image_idx = idxs.find(element.image_id);
-    if (image_idx == idxs.end()) continue;
-    const auto first = first_predicted.find(element.image_id);
-    const bool is_predicted =
-        first != first_predicted.end() && element.point2D_idx >= first->second;
+    const auto place = places.find(element.image_id);
+    if (place == places.end()) continue;
+    const bool is_predicted = element.point2D_idx >= place->second.first_predicted;
     const auto view =
-        ViewFrom(model, point.xyz, image_idx->second,
+        ViewFrom(model, point.xyz, place->second.idx,
                  {point_idx, element.point2D_idx,
                   is_predicted ? ObservationRole::kPredicted : ObservationRole::kOther});
     if (view) views.push_back(*view);
@@ -92,14 +93,19 @@ void MarkReference(std::vector<View>* views) {
 
 TrackTable MakeTrackTable(const SparseModel& model,
                           const std::map<uint32_t, size_t>& first_predicted) {
-  ImageIdxs idxs;
-  for (size_t i = 0; i < model.images.size(); ++i) idxs.emplace(model.images[i].image_id, i);
+  ImagePlaces places;
+  for (size_t i = 0; i < model.images.size(); ++i) {
+    const auto first = first_predicted.find(model.images[i].image_id);
+    const size_t num_found =
+        first == first_predicted.end() ? model.images[i].points2D.size() : first->second;
+    places.emplace(model.images[i].image_id, ImagePlace{i, num_found});
+  }
   TrackTable table;
   table.observations.resize(model.images.size());
   for (const auto& [id, point] : model.points3D) {
     const int point_idx = static_cast<int>(table.point3D_ids.size());
     table.point3D_ids.push_back(id);
-    std::vector<View> views = ViewsOf(model, idxs, first_predicted, point_idx, point);
+    std::vector<View> views = ViewsOf(model, places, point_idx, point);
     MarkReference(&views);
     for (const View& view : views) table.observations[view.image_idx].push_back(view.observation);
   }
