@@ -4,7 +4,6 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
-#include "colmap_seapoint/io/files/content_hash.h"
 #include "colmap_seapoint/io/files/run_report_json.h"
 #include "colmap_seapoint/io/image/picture_masks.h"
 #include "colmap_seapoint/pipeline/completeness.h"
@@ -47,7 +46,7 @@ CompletenessReporterOptions ReporterOptions(const AutomaticReconstructorOptions&
 std::string InputsOf(const CompletenessReporterOptions& reporter, const ModelSummary& model,
                      const std::string& mapper_fingerprint, const RunReport& report) {
   std::string text = mapper_fingerprint + model.name + "," + model.scaling_fingerprint +
-                     HashFile(reporter.cloud_path) +
+                     model.cloud_hash +
                      PictureMasks(reporter.mask_path).Fingerprint(model.pictures) +
                      OptionsFingerprint(OptionValues(reporter.completeness));
   for (const RunReport::Input& input : report.inputs) text += "\n" + input.name + " " + input.hash;

@@ -2,6 +2,7 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/files/content_hash.h"
 #include "colmap_seapoint/io/files/run_report_json.h"
 #include "colmap_seapoint/io/image/picture_masks.h"
 #include "colmap_seapoint/pipeline/densify.h"
@@ -59,7 +60,10 @@ void DensifyModels(const AutomaticReconstructorOptions& options, const Workspace
     AddPart(model.densification, report);
     report->pairs += model.densification.pairs;
     report->points += model.densification.points;
-    if (model.densification.points > 0) continue;
+    if (model.densification.points > 0) {
+      model.cloud_hash = HashFile(model.cloud_path);
+      continue;
+    }
     LeaveOut("sparse/" + model.name,
              "no pair of this model gave a point; see dense/" + model.name + "/pairs.csv", report);
   }

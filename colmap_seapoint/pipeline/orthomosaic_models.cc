@@ -83,7 +83,7 @@ void MakeMaps(const AutomaticReconstructorOptions& options, const Workspace& wor
     }
     const Stage stage = {kStages + model.name, kOrthomosaicVersion,
                          mapper_fingerprint + model.name + "," + model.scaling_fingerprint + "," +
-                             DescribeInput(maker.cloud_path, maker.cloud_path).hash +
+                             model.cloud_hash +
                              PictureMasks(maker.mask_path).Fingerprint(model.pictures) +
                              OptionsFingerprint(OptionValues(options.map)),
                          "The map in " + maker.output_path + " is there already"};

@@ -16,6 +16,7 @@ struct ModelSummary {
   std::vector<std::string> pictures;  // registered
   RunReport densification;
   std::filesystem::path cloud_path;
+  std::string cloud_hash;  // what is made of the cloud depends on it; empty: no cloud
   std::string units = "units arbitrary";  // or metres, and the frame
   std::string units_word = "arbitrary";
   std::string scaling_fingerprint;  // of all that the units depend on; empty: not scaled
