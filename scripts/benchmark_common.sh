@@ -1,8 +1,14 @@
-# What the benchmark scripts share; they source it. No program of its own.
+# What the benchmarks and run_mission.sh share; they source it. No program of its own.
 
 # The comment at the head of the script that was started.
 usage() {
   sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//p}' "$0" >&2
+}
+
+# Sets $binary to the colmap_seapoint that --binary names.
+take_binary() {  # FILE
+  [ -x "$1" ] || { echo "$1: no such program; give colmap_seapoint" >&2; exit 1; }
+  binary=$(realpath "$1")
 }
 
 # "$output" as an absolute path; `$called_from` is where the script was started, its default the

@@ -30,9 +30,7 @@ while [ $# -gt 0 ]; do
       [ $# -ge 2 ] || { usage; echo "$1 needs a value" >&2; exit 2; }
       case $1 in
         --output) output=$2 ;;
-        --binary)
-          [ -x "$2" ] || { echo "$2: no such program; give colmap_seapoint" >&2; exit 1; }
-          binary=$(realpath "$2") ;;
+        --binary) take_binary "$2" ;;
         *) densify_options+=("$1" "$2") ;;
       esac
       shift 2 ;;

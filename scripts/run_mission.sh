@@ -33,9 +33,7 @@ while [ $# -gt 0 ]; do
         --jobs)
           [[ $2 =~ ^[1-9][0-9]*$ ]] || { echo "--jobs $2: give a number of dives" >&2; exit 2; }
           jobs=$2 ;;
-        --binary)
-          [ -x "$2" ] || { echo "$2: no such program; give colmap_seapoint" >&2; exit 1; }
-          binary=$(realpath "$2") ;;
+        --binary) take_binary "$2" ;;
       esac
       shift 2 ;;
     -*) usage; echo "unknown option $1" >&2; exit 2 ;;
