@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "colmap_seapoint/base/median.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -43,10 +46,7 @@ std::vector<Sight> SightsOfPoint(const std::vector<SurveyView>& views, const Sur
 }  // namespace
 
 double MedianOf(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return values.empty() ? 0 : UpperMedian(std::move(values));
 }
 
 std::vector<SurfacePoint> SampleCloud(const CompletenessInput& input) {

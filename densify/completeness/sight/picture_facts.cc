@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "colmap_seapoint/base/median.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -12,13 +15,6 @@ constexpr double kDark = 6, kBurnt = 250;  // mean levels
 constexpr double kSmooth = 0.22, kBlurred = 0.5;
 constexpr double kTextured = 2;    // levels: below it sharpness is that of the noise
 constexpr double kBadShare = 0.5;  // of cells that are badly exposed
-
-double MedianOf(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Means of 2 x 2 pixels of one cell, up to 8 x 8 of them.
 struct HalvedCell {
@@ -133,7 +129,7 @@ PictureFacts MeasurePicture(const GrayImage& luma, const GrayImage& mask) {
       if (cell.deviation > kTextured && !is_bad) sharpness.push_back(cell.sharpness);
     }
   }
-  facts.sharpness = MedianOf(std::move(sharpness));
+  if (!sharpness.empty()) facts.sharpness = UpperMedian(std::move(sharpness));
   return facts;
 }
 
@@ -142,7 +138,7 @@ void JudgePictures(std::vector<PictureFacts>* pictures) {
   for (const PictureFacts& picture : *pictures) {
     if (picture.sharpness > 0) all.push_back(picture.sharpness);
   }
-  const double usual = MedianOf(all);
+  const double usual = all.empty() ? 0 : UpperMedian(std::move(all));
   const int count = static_cast<int>(pictures->size());
   std::vector<double> around;
   for (int i = 0; i < count; ++i) {
@@ -152,7 +148,7 @@ void JudgePictures(std::vector<PictureFacts>* pictures) {
       const double sharpness = (*pictures)[static_cast<size_t>(k)].sharpness;
       if (k != i && sharpness > 0) around.push_back(sharpness);
     }
-    const double expected = std::min(usual, around.empty() ? usual : MedianOf(around));
+    const double expected = std::min(usual, around.empty() ? usual : UpperMedian(around));
     picture.is_bad |=
         (picture.sharpness > 0 && picture.sharpness < kSmooth + kBlurred * (expected - kSmooth)) ||
         BadlyExposedShare(picture) > kBadShare;

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
+
+#include "colmap_seapoint/base/median.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -126,14 +129,12 @@ bool IsSeenFromTwoSides(const std::vector<Sight>& sights, double min_parallax_de
 }
 
 uint8_t MedianTexture(const std::vector<Sight>& sights) {
-  std::vector<uint8_t> texture;
+  std::vector<double> texture;
   for (const Sight& s : sights) {
     if (s.kind == SightKind::kGood) texture.push_back(s.texture);
   }
   if (texture.size() < 2) return kUnknownTexture;
-  const auto middle = texture.begin() + static_cast<std::ptrdiff_t>(texture.size() / 2);
-  std::nth_element(texture.begin(), middle, texture.end());
-  return *middle;
+  return static_cast<uint8_t>(UpperMedian(std::move(texture)));
 }
 
 bool NeedsBadPictures(const SightContext& context, const std::vector<Sight>& sights) {

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "colmap_seapoint/base/median.h"
 #include "colmap_seapoint/base/parallel.h"
 
 namespace colmap_seapoint {
@@ -108,10 +110,7 @@ double VisualRange(const SparseModel& model) {
     }
   }
   if (ranges.empty()) return std::numeric_limits<double>::infinity();
-  const auto nth = ranges.begin() + static_cast<std::ptrdiff_t>(
-                                        kRangeShare * static_cast<double>(ranges.size() - 1));
-  std::nth_element(ranges.begin(), nth, ranges.end());
-  return kRangeMargin * *nth;
+  return kRangeMargin * Quantile(std::move(ranges), kRangeShare);
 }
 
 std::vector<DepthCells> DrawDepths(const Ground& ground, const std::vector<SurveyView>& views,
