@@ -13,7 +13,7 @@ namespace colmap_seapoint {
 namespace {
 
 // Below libpng's own 6: of a large picture, packing is most of the time.
-constexpr int kCompressionLevel = 3;
+constexpr int kCompressionLevel = 1;
 
 int PngType(PngColors colors) {
   switch (colors) {

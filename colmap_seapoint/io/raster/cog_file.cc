@@ -97,9 +97,9 @@ std::filesystem::path BlockFolder(const std::filesystem::path& path) {
 
 GdalStrings ScratchOptions(const RasterLayout& layout) {
   const std::string tile = std::to_string(ScratchTile(layout.tile_size));
-  GdalStrings options = {"TILED=YES",        "BLOCKXSIZE=" + tile, "BLOCKYSIZE=" + tile,
-                         "COMPRESS=DEFLATE", "ZLEVEL=1",           "BIGTIFF=IF_SAFER",
-                         "SPARSE_OK=TRUE",   "INTERLEAVE=PIXEL"};
+  GdalStrings options = {"TILED=YES",      "BLOCKXSIZE=" + tile, "BLOCKYSIZE=" + tile,
+                         "COMPRESS=ZSTD",  "ZSTD_LEVEL=1",       "BIGTIFF=IF_SAFER",
+                         "SPARSE_OK=TRUE", "INTERLEAVE=PIXEL"};
   if (layout.bands == RasterBands::kRgba8) {
     options.Add("PHOTOMETRIC=RGB");
     options.Add("ALPHA=YES");

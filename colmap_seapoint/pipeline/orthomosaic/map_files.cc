@@ -18,10 +18,16 @@ constexpr char kFlagsText[] =
     "sum of 1: measured, 2: bridged between measured cells next to it, 4: filled, 8: another "
     "surface below, 16: no picture shows it";
 
-FloatImage HeightsForFile(FloatImage heights, double offset) {
+// A step that floats hold exactly, at most a 64th of a pixel: what is finer is noise, and packs to
+// two and a half times the size.
+double HeightStep(double pixel_size) { return std::exp2(std::floor(std::log2(pixel_size / 64))); }
+
+FloatImage HeightsForFile(FloatImage heights, double offset, double step) {
+  const double per_step = 1 / step;
   for (float& height : heights.data) {
-    height = std::isnan(height) ? static_cast<float>(kNoHeightInFile)
-                                : static_cast<float>(double{height} + offset);
+    height = std::isnan(height)
+                 ? static_cast<float>(kNoHeightInFile)
+                 : static_cast<float>(step * std::rint(per_step * (double{height} + offset)));
   }
   return heights;
 }
@@ -68,6 +74,7 @@ void MapFiles::RemoveFormer() const {
 void MapFiles::Begin(const MapFrame& frame, const MapGrid& grid) {
   placement_ = PlaceMap(frame, units_);
   tile_size_ = grid.tile_size;
+  height_step_ = HeightStep(grid.pixel_size);
   const auto layout_of = [&](RasterBands bands, std::optional<double> nodata) {
     RasterLayout layout = LayoutOfMap(grid, placement_, bands);
     layout.nodata = nodata;
@@ -105,7 +112,8 @@ void MapFiles::Take(MapTile&& tile) {
   const int column = tile.x / tile_size_, row = tile.y / tile_size_;
   Writer(kMapColors).WriteTile(column, row, tile.rgba);
   Writer(kMapHeights)
-      .WriteTile(column, row, HeightsForFile(std::move(tile.relief), placement_.offset.z()));
+      .WriteTile(column, row,
+                 HeightsForFile(std::move(tile.relief), placement_.offset.z(), height_step_));
   Writer(kMapSurface).WriteTile(column, row, tile.surface);
   if (num_pictures_ > std::numeric_limits<uint16_t>::max()) {
     WriteSources<uint32_t>(column, row, tile.source);

@@ -64,6 +64,7 @@ class MapFiles : public MapTileSink {
   MapPlacement placement_;
   std::vector<Raster> rasters_;
   int tile_size_ = 0;
+  double height_step_ = 0;  // heights are whole numbers of it
 };
 
 }  // namespace colmap_seapoint
