@@ -21,7 +21,7 @@
 namespace colmap_seapoint {
 
 // Raised whenever a map changes for the same inputs and options.
-inline constexpr char kOrthomosaicVersion[] = "1";
+inline constexpr char kOrthomosaicVersion[] = "2";
 
 struct OrthomosaicOptions {
   MapFrameOptions plane;

@@ -9,12 +9,13 @@
 #include <tuple>
 #include <utility>
 
-#include "colmap_seapoint/orthomosaic/patch_projection.h"
+#include "colmap_seapoint/orthomosaic/ground/patch_projection.h"
 #include "colmap_seapoint/orthomosaic/relief/line_of_sight.h"
 
 namespace colmap_seapoint {
 namespace {
 
+constexpr uint8_t kAllCorners = 15;
 constexpr double kShadowCells = 1.5;  // what hides a place must be higher by, in cells
 
 // The square between the centres of four blocks: block (x, y) is its upper left one. `corners`: bit
@@ -98,7 +99,8 @@ class TileCanvas {
   class Brush;
   void AddPatch(int x, int y, std::vector<Patch>* patches) const;
   void DrawPatch(const Patch& patch, Brush* brush);
-  std::vector<Gap> FindGaps(int rank) const;
+  std::vector<Gap> FindGaps() const;  // pixels without a colour
+  void OfferSources(int rank, std::vector<Gap>* gaps) const;
   MapGrid::Box Within(int x, int y, int width, int height) const {  // what of it is in the tile
     const int left = std::max(x, 0), top = std::max(y, 0);
     return {left, top, std::min(x + width, box_.width) - left,
@@ -126,8 +128,10 @@ class TileCanvas::Brush {
         view_(canvas.scene_.views[picture]),
         picture_idx_(picture),
         picture_(canvas.pictures_.Get(picture)),
-        scale_x_(static_cast<double>(picture_->luma.width) / view_.GetCamera().width),
-        scale_y_(static_cast<double>(picture_->luma.height) / view_.GetCamera().height) {
+        scale_x_(static_cast<float>(picture_->luma.width) /
+                 static_cast<float>(view_.GetCamera().width)),
+        scale_y_(static_cast<float>(picture_->luma.height) /
+                 static_cast<float>(view_.GetCamera().height)) {
     const MapGrid& grid = canvas.scene_.relief.Grid();
     camera_ << grid.PixelOf(view_.Center().x(), view_.Center().y()), view_.Center().z();
   }
@@ -136,19 +140,27 @@ class TileCanvas::Brush {
   // exposure do is worked out in its middle and taken for linear. False where it has no surface.
   bool MoveTo(const MapGrid::Box& area);
 
-  // False where the picture does not show the pixel of the tile.
-  bool ColorOf(int x, int y, Light* light) const {
-    if (picture_->Empty()) return false;  // a file may be gone by now
-    const MapPlace place = PlaceAt(x, y);
-    const auto pixel = projection_->PixelOf(place);
-    if (!pixel) return false;
-    const auto px = static_cast<float>(scale_x_ * pixel->x());
-    const auto py = static_cast<float>(scale_y_ * pixel->y());
-    if (IsMasked(*picture_, px, py) || IsHidden(place)) return false;
-    *light = LightAt(*picture_, px, py);
-    if (canvas_.scene_.restoration != nullptr) Restore(place, light);
-    exposure_.Apply(px, py, light);
-    return true;
+  // Calls paint(x, light) for every pixel of the row, from `x` on, that has a surface and that the
+  // picture shows. No more than a block's side.
+  template <typename Paint>
+  void ColorRow(int x, int y, int count, const Paint& paint) const {
+    if (picture_->Empty()) return;  // a file may be gone by now
+    std::array<float, kBlockSize> px, py;
+    const float* heights = canvas_.relief_.heights.Row(y + kReliefMargin) + x + kReliefMargin;
+    projection_->PixelsOfRow(canvas_.box_.x + x + 0.5, canvas_.box_.y + y + 0.5, heights, count,
+                             px.data(), py.data());
+    const uint8_t* surface = canvas_.relief_.surface.Row(y) + x;
+    for (int i = 0; i < count; ++i) {
+      const auto at = static_cast<size_t>(i);
+      if (surface[i] == 0 || std::isnan(px[at])) continue;
+      const float u = scale_x_ * px[at], v = scale_y_ * py[at];
+      const MapPlace place = PlaceAt(x + i, y);
+      if (IsMasked(*picture_, u, v) || IsHidden(place)) continue;
+      Light light = LightAt(*picture_, u, v);
+      if (canvas_.scene_.restoration != nullptr) Restore(place, &light);
+      exposure_.Apply(u, v, &light);
+      paint(x + i, light);
+    }
   }
 
  private:
@@ -178,7 +190,7 @@ class TileCanvas::Brush {
   const MapView& view_;
   uint32_t picture_idx_;
   std::shared_ptr<const Picture> picture_;
-  double scale_x_, scale_y_;
+  float scale_x_, scale_y_;
   MapPlace camera_;
   std::optional<PatchProjection> projection_;
   LocalExposure exposure_;
@@ -205,7 +217,7 @@ bool TileCanvas::Brush::MoveTo(const MapGrid::Box& area) {
   const Eigen::Vector2d on_map = canvas_.scene_.relief.Grid().PlaceOf(middle.x(), middle.y());
   exposure_ =
       LocalExposure(canvas_.scene_.exposure, on_map, picture_idx_, *picture_,
-                    static_cast<float>(scale_x_ * at.x()), static_cast<float>(scale_y_ * at.y()));
+                    scale_x_ * static_cast<float>(at.x()), scale_y_ * static_cast<float>(at.y()));
   return true;
 }
 
@@ -245,18 +257,19 @@ void TileCanvas::DrawPatch(const Patch& patch, Brush* brush) {
   const int top = patch.y * kBlockSize + kBlockSize / 2 - box_.y;
   const MapGrid::Box area = Within(left, top, kBlockSize, kBlockSize);
   if (!brush->MoveTo(area)) return;
+  const auto weight_at = [&](int x, int y) {
+    if (patch.corners == kAllCorners) return 1.0f;
+    const float fx = (static_cast<float>(x - left) + 0.5f) * kStep;
+    const float fy = (static_cast<float>(y - top) + 0.5f) * kStep;
+    const float corner[4] = {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
+    float weight = 0;
+    for (int k = 0; k < 4; ++k) weight += patch.corners >> k & 1 ? corner[k] : 0;
+    return weight * weight * weight * weight;
+  };
   for (int y = area.y; y < area.y + area.height; ++y) {
-    for (int x = area.x; x < area.x + area.width; ++x) {
-      if (relief_.surface.At(x, y) == 0) continue;
-      const float fx = (static_cast<float>(x - left) + 0.5f) * kStep;
-      const float fy = (static_cast<float>(y - top) + 0.5f) * kStep;
-      const float corner[4] = {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
-      float weight = 0;
-      for (int k = 0; k < 4; ++k) weight += patch.corners >> k & 1 ? corner[k] : 0;
-      Light light;
-      if (!brush->ColorOf(x, y, &light)) continue;
-      AddColor(x, y, patch.picture, light, weight * weight * weight * weight);
-    }
+    brush->ColorRow(area.x, y, area.width, [&](int x, const Light& light) {
+      AddColor(x, y, patch.picture, light, weight_at(x, y));
+    });
   }
 }
 
@@ -274,25 +287,36 @@ void TileCanvas::DrawChosen() {
   }
 }
 
-// Pixels without a colour whose block has a source of that rank.
-std::vector<Gap> TileCanvas::FindGaps(int rank) const {
+std::vector<Gap> TileCanvas::FindGaps() const {
   std::vector<Gap> gaps;
-  const BlockRelief& blocks = scene_.relief.Blocks();
   for (int y = 0; y < box_.height; ++y) {
     for (int x = 0; x < box_.width; ++x) {
-      if (relief_.surface.At(x, y) == 0 || sums_[At(x, y)].weight > 0) continue;
-      const size_t block = blocks.At((box_.x + x) / kBlockSize, (box_.y + y) / kBlockSize);
-      const int32_t at = scene_.sources.slot[block];
-      const uint32_t picture = at < 0 ? kNoPicture : scene_.sources.Of(at)[rank].picture;
-      if (picture != kNoPicture) gaps.push_back({picture, x, y});
+      if (relief_.surface.At(x, y) != 0 && !(sums_[At(x, y)].weight > 0)) {
+        gaps.push_back({kNoPicture, x, y});
+      }
     }
   }
   return gaps;
 }
 
+// Leaves those that still have no colour and whose block has a source of that rank.
+void TileCanvas::OfferSources(int rank, std::vector<Gap>* gaps) const {
+  const BlockRelief& blocks = scene_.relief.Blocks();
+  const auto is_done = [&](Gap& gap) {
+    if (sums_[At(gap.x, gap.y)].weight > 0) return true;
+    const int32_t at =
+        scene_.sources
+            .slot[blocks.At((box_.x + gap.x) / kBlockSize, (box_.y + gap.y) / kBlockSize)];
+    gap.picture = at < 0 ? kNoPicture : scene_.sources.Of(at)[rank].picture;
+    return gap.picture == kNoPicture;  // then those of the next ranks are none either
+  };
+  gaps->erase(std::remove_if(gaps->begin(), gaps->end(), is_done), gaps->end());
+}
+
 void TileCanvas::DrawOthers() {
+  std::vector<Gap> gaps = FindGaps();
   for (int rank = 0; rank < kMaxSources; ++rank) {
-    std::vector<Gap> gaps = FindGaps(rank);
+    OfferSources(rank, &gaps);
     std::sort(gaps.begin(), gaps.end());
     for (size_t i = 0; i < gaps.size();) {
       const uint32_t picture = gaps[i].picture;
@@ -303,10 +327,8 @@ void TileCanvas::DrawOthers() {
           y = gaps[i].y;
           if (!brush.MoveTo(Within(x, y, kBlockSize, 1))) continue;
         }
-        Light light;
-        if (brush.ColorOf(gaps[i].x, gaps[i].y, &light)) {
-          AddColor(gaps[i].x, gaps[i].y, picture, light, 1);
-        }
+        brush.ColorRow(gaps[i].x, y, 1,
+                       [&](int at, const Light& light) { AddColor(at, y, picture, light, 1); });
       }
     }
   }

@@ -116,9 +116,8 @@ Eigen::Array3d WhiteBalance(const std::vector<WaterSample>& samples, WaterModel 
   std::vector<Eigen::Array3d> colors;
   Eigen::Array3d powers = Eigen::Array3d::Zero();
   for (const WaterSample& sample : samples) {
-    colors.push_back(
-        Restore(water, ColorOf(sample).cast<float>(), sample.range, sample.axis_cosine)
-            .cast<double>());
+    colors.push_back(Restore(water, ColorOf(sample).cast<float>(), sample.range, sample.axis_cosine)
+                         .cast<double>());
     powers += colors.back().pow(kPower);
   }
   const Eigen::Array3d bright =

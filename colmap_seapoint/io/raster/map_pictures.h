@@ -10,7 +10,7 @@
 namespace colmap_seapoint {
 
 // Programs that show pictures open no PNG with longer sides in reasonable time.
-inline constexpr int kMaxHillshadeSide = 16384;
+inline constexpr int kMaxHillshadeSide = 8192;
 inline constexpr int kMaxPreviewSide = 4000;
 
 // The heights of `dem` (raster_writer.h) shaded, as a PNG in grey, transparent where there are

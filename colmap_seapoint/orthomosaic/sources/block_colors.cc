@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "colmap_seapoint/base/parallel.h"
+#include "colmap_seapoint/orthomosaic/ground/patch_projection.h"
 #include "colmap_seapoint/orthomosaic/sources/picture_sample.h"
 
 namespace colmap_seapoint {
@@ -13,8 +14,8 @@ namespace {
 
 constexpr int kSamples = 4;           // along each side of a block
 constexpr double kSharpWeight = 0.5;  // of a halving of the contrast, against one of the GSD
-constexpr float kMinBlur = 1.5f;      // times the sharpest: less is noise
-constexpr float kMaxBlur = 8;         // what is duller still is as bad
+constexpr float kMinBlur = 0.6f;      // octaves below the sharpest: less is noise
+constexpr float kMaxBlur = 3;         // what is duller still is as bad
 
 // The contrast of a pixel with its neighbours, over its brightness.
 float ContrastAt(const GrayImage& luma, int x, int y) {
@@ -23,6 +24,14 @@ float ContrastAt(const GrayImage& luma, int x, int y) {
   const int across = std::abs(2 * here - luma.At(x - 1, y) - luma.At(x + 1, y));
   const int along = std::abs(2 * here - luma.At(x, y - 1) - luma.At(x, y + 1));
   return static_cast<float>(across + along) / static_cast<float>(here + 10);
+}
+
+// In steps of a sixteenth of an octave above the least contrast that counts.
+constexpr float kOctaveSteps = 16, kLeastContrast = 1.0f / 4096;
+
+uint8_t SharpnessOf(float contrast) {
+  const float octaves = std::log2(std::max(contrast, kLeastContrast) / kLeastContrast);
+  return static_cast<uint8_t>(std::clamp(1 + kOctaveSteps * octaves, 1.0f, 255.0f));
 }
 
 class SourceViewer {
@@ -38,12 +47,15 @@ class SourceViewer {
   void Look(int x, int y, Source* source) const {
     float sum[3] = {0, 0, 0}, contrast = 0;
     int count = 0;
+    const BlockRelief& blocks = relief_.Blocks();
+    const Eigen::Vector3d middle((x + 0.5) * kBlockSize, (y + 0.5) * kBlockSize,
+                                 double{blocks.mean[blocks.At(x, y)]});
+    const PatchProjection projection(view_, relief_.Grid(), middle);
     for (int i = 0; i < kSamples * kSamples; ++i) {
-      const double step = static_cast<double>(kBlockSize) / kSamples;
-      const int column = i % kSamples, row = i / kSamples;
-      const double dx = (column + 0.5) * step - 0.5 * kBlockSize;
-      const double dy = (row + 0.5) * step - 0.5 * kBlockSize;
-      const auto pixel = view_.PixelOf(PlaceInBlock(relief_, x, y, dx, dy));
+      constexpr double kStep = static_cast<double>(kBlockSize) / kSamples;
+      const double dx = (i % kSamples + 0.5) * kStep - 0.5 * kBlockSize;
+      const double dy = (i / kSamples + 0.5) * kStep - 0.5 * kBlockSize;
+      const auto pixel = projection.PixelOf(middle + Eigen::Vector3d(dx, dy, 0));
       if (!pixel) continue;
       const auto px = static_cast<float>(scale_x_ * pixel->x());
       const auto py = static_cast<float>(scale_y_ * pixel->y());
@@ -57,8 +69,7 @@ class SourceViewer {
     for (size_t c = 0; c < 3; ++c) {
       source->rgb[c] = static_cast<uint8_t>(sum[c] / static_cast<float>(count) + 0.5f);
     }
-    const float mean = contrast / static_cast<float>(count);
-    source->sharpness = static_cast<uint8_t>(std::clamp(200 * mean, 1.0f, 255.0f));
+    source->sharpness = SharpnessOf(contrast / static_cast<float>(count));
   }
 
  private:
@@ -91,9 +102,9 @@ void SortSources(Source* sources) {
   }
   for (int k = 0; k < kMaxSources; ++k) {
     if (sources[k].picture == kNoPicture) continue;
-    const float blur = static_cast<float>(sharpest) / static_cast<float>(sources[k].sharpness);
-    sources[k].cost += static_cast<float>(kSharpWeight) *
-                       std::log2(std::clamp(blur, kMinBlur, kMaxBlur) / kMinBlur);
+    const float blur = static_cast<float>(sharpest - sources[k].sharpness) / kOctaveSteps;
+    sources[k].cost +=
+        static_cast<float>(kSharpWeight) * (std::clamp(blur, kMinBlur, kMaxBlur) - kMinBlur);
   }
   std::stable_sort(sources, sources + kMaxSources, [](const Source& a, const Source& b) {
     if ((a.picture == kNoPicture) != (b.picture == kNoPicture)) return b.picture == kNoPicture;

@@ -19,7 +19,8 @@ struct Source {
   uint32_t picture = kNoPicture;           // position in the model's images
   float cost = 0;                          // the less the better; about 1 for twice the GSD
   std::array<uint8_t, 3> rgb = {0, 0, 0};  // mean of the block in that picture
-  uint8_t sharpness = 0;                   // mean contrast of neighbouring pixels; 0: not looked at
+  uint8_t sharpness = 0;                   // of the contrast of neighbours, in 16ths of an octave;
+                                           // 0: not looked at
 };
 
 // kMaxSources a block with a surface, the cheapest first, then those without a picture.

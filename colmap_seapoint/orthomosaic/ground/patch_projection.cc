@@ -1,7 +1,8 @@
-#include "colmap_seapoint/orthomosaic/patch_projection.h"
+#include "colmap_seapoint/orthomosaic/ground/patch_projection.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 namespace colmap_seapoint {
@@ -21,6 +22,40 @@ PatchProjection::PatchProjection(const MapView& view, const MapGrid& grid,
   const Eigen::Vector3d map_units(grid.pixel_size, -grid.pixel_size, 1);  // a column, a row, height
   in_cam_from_pixels_ = view.Rotation() * map_units.asDiagonal();
   MakeLinear();
+}
+
+void PatchProjection::PixelsOfRow(double column, double row, const float* heights, int count,
+                                  float* x, float* y) const {
+  const Eigen::Vector3f first =
+      (in_cam_ + in_cam_from_pixels_ * (Eigen::Vector3d(column, row, middle_.z()) - middle_))
+          .cast<float>();
+  const Eigen::Vector3f step = in_cam_from_pixels_.col(0).cast<float>();
+  const Eigen::Vector3f up = in_cam_from_pixels_.col(2).cast<float>();
+  const Eigen::Matrix2f lens = pixel_from_ray_.cast<float>();
+  const auto middle_height = static_cast<float>(middle_.z());
+  const auto reach = static_cast<float>(reach_);
+  const auto ray_x = static_cast<float>(ray_.x()), ray_y = static_cast<float>(ray_.y());
+  const auto pixel_x = static_cast<float>(pixel_.x()), pixel_y = static_cast<float>(pixel_.y());
+  bool is_linear = true;
+  for (int i = 0; i < count; ++i) {
+    const auto steps = static_cast<float>(i);
+    const float height = heights[i] - middle_height;
+    const float z = first.z() + steps * step.z() + height * up.z();
+    const float u = (first.x() + steps * step.x() + height * up.x()) / z - ray_x;
+    const float v = (first.y() + steps * step.y() + height * up.y()) / z - ray_y;
+    is_linear &= (z > 0) & (std::abs(u) <= reach) & (std::abs(v) <= reach);
+    x[i] = pixel_x + lens(0, 0) * u + lens(0, 1) * v;
+    y[i] = pixel_y + lens(1, 0) * u + lens(1, 1) * v;
+  }
+  const Camera& camera = view_.GetCamera();
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  for (int i = 0; i < count; ++i) {
+    std::optional<Eigen::Vector2d> pixel = Eigen::Vector2d(double{x[i]}, double{y[i]});
+    if (!is_linear) pixel = PixelOf({column + i, row, double{heights[i]}});
+    const bool is_shown = pixel && camera.InImage(*pixel);
+    x[i] = is_shown ? static_cast<float>(pixel->x()) : kNone;
+    y[i] = is_shown ? static_cast<float>(pixel->y()) : kNone;
+  }
 }
 
 // The lens's second differences tell how far its tangent is right.
