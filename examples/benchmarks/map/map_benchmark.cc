@@ -122,7 +122,7 @@ int Survey(const std::vector<std::string>& arguments) {
   std::printf("%d marks: median %.3f pixels, p95 %.3f\n", marks.num_marks, marks.median, marks.p95);
   std::printf("colours: mean CIEDE2000 %.2f%s\n", MeasureColors(truth, survey, map),
               summary.water ? ("; " + WaterText(*summary.water)).c_str() : "");
-  std::printf("%d pairs across seams: step %.3f levels, inside one picture %.3f: %.2f times\n",
+  std::printf("%d pairs across seams: step %.3f %%, inside one picture %.3f: %.2f times\n",
               seams.num_pairs, seams.across, seams.inside, seams.across / seams.inside);
   return 0;
 }

@@ -163,7 +163,8 @@ FloatImage TruePatch(const SurveyTruth& truth, const MemoryMap& map, int x, int 
   return patch;
 }
 
-// What one picture shows at the centre of a pixel of the map, in brightness.
+// What one picture shows at the centre of a pixel of the map, in brightness; of whole levels a
+// channel, as the map's own.
 std::optional<double> BrightnessIn(const MapView& view, const Picture& picture,
                                    const MemoryMap& map, int x, int y) {
   const Eigen::Vector2d place = map.Grid().PlaceOf(x + 0.5, y + 0.5);
@@ -171,7 +172,12 @@ std::optional<double> BrightnessIn(const MapView& view, const Picture& picture,
   if (!pixel) return std::nullopt;
   const auto color =
       ScreenColorAt(picture, static_cast<float>(pixel->x()), static_cast<float>(pixel->y()));
-  return 0.299 * double{color[0]} + 0.587 * double{color[1]} + 0.114 * double{color[2]};
+  return 0.299 * std::rint(color[0]) + 0.587 * std::rint(color[1]) + 0.114 * std::rint(color[2]);
+}
+
+// Of neighbours, in per cent of their brightness: the map is balanced, the pictures are not.
+double ContrastOf(double left, double right) {
+  return 100 * std::abs(left - right) / std::max(1.0, 0.5 * (left + right));
 }
 
 // Whether two pictures truly see the surface at a pixel or one beside it: on a steep face they may
@@ -287,8 +293,8 @@ SeamSteps MeasureSeams(const SurveyTruth& truth, const MapPictureReader& read,
       const auto left = BrightnessIn(view, picture, map, x, y);
       const auto right = BrightnessIn(view, picture, map, x + 1, y);
       if (!left || !right) continue;
-      inside.push_back(std::abs(*left - *right));
-      across.push_back(std::abs(Luma(whole.rgba, x, y) - Luma(whole.rgba, x + 1, y)));
+      inside.push_back(ContrastOf(*left, *right));
+      across.push_back(ContrastOf(Luma(whole.rgba, x, y), Luma(whole.rgba, x + 1, y)));
     }
   }
   return {static_cast<int>(across.size()), QuantileOr0(across, 0.5), QuantileOr0(inside, 0.5)};

@@ -39,7 +39,7 @@ double MeasureColors(const SurveyTruth& truth, const SurveyOptions& options, con
 
 struct SeamSteps {
   int num_pairs = 0;
-  double across = 0;  // median step of brightness, levels, between neighbours of two sources
+  double across = 0;  // median step, per cent of the brightness, between neighbours of two sources
   double inside = 0;  // of the same places in one of the two pictures
 };
 
