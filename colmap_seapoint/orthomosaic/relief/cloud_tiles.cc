@@ -49,11 +49,21 @@ void ReadAllPoints(const std::filesystem::path& path, const TakePoint& take) {
   for (CloudVertex vertex; reader.Next(&vertex);) take(vertex.xyz, vertex.confidence);
 }
 
+// Somewhere in part i, of `size`, of a file: clouds of other programs lie in rows, and what is
+// taken at equal steps of them may all lie at one end.
+uint64_t ScatteredIn(uint64_t i, uint64_t size) {
+  uint64_t bits = (i + 1) * 0x9e3779b97f4a7c15ull;
+  bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ull;
+  bits ^= bits >> 31;
+  return bits % size;
+}
+
 std::vector<Eigen::Vector3d> SampleRanges(const CloudRanges& cloud) {
   std::vector<Eigen::Vector3d> sample;
   const uint64_t length = kSamplePoints / kSampleRanges;
+  const uint64_t part = cloud.NumPoints() / kSampleRanges;
   for (uint64_t i = 0; i < kSampleRanges; ++i) {
-    const uint64_t first = cloud.NumPoints() / kSampleRanges * i;
+    const uint64_t first = part * i + ScatteredIn(i, part - length + 1);
     for (const CloudPoint& point : cloud.Read(first, length)) {
       if (point.xyz.allFinite()) sample.push_back(point.xyz.cast<double>());
     }
@@ -84,7 +94,8 @@ std::vector<Eigen::Vector3d> SampleCloud(const std::filesystem::path& path) {
     const uint64_t stride = num_points / kSamplePoints + 1;
     uint64_t num_read = 0;
     ReadAllPoints(path, [&](const Eigen::Vector3d& xyz, float) {
-      if (num_read++ % stride == 0) sample.push_back(xyz);
+      if (num_read % stride == ScatteredIn(num_read / stride, stride)) sample.push_back(xyz);
+      ++num_read;
     });
   }
   if (sample.empty()) {
