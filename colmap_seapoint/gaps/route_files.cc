@@ -78,14 +78,13 @@ std::string RoutePlan(const CompletenessResult& result, const GapPlaces& places)
       {"plannedHomePosition", {first.latitude, first.longitude, HomeAltitude(route)}},
       {"vehicleType", kSubmarine},
       {"version", 2}};
-  const Json plan = {{"fileType", "Plan"},
-                     {"geoFence", {{"circles", Json::array()},
-                                   {"polygons", Json::array()},
-                                   {"version", 2}}},
-                     {"groundStation", "colmap_seapoint"},
-                     {"mission", mission},
-                     {"rallyPoints", {{"points", Json::array()}, {"version", 2}}},
-                     {"version", 1}};
+  const Json plan = {
+      {"fileType", "Plan"},
+      {"geoFence", {{"circles", Json::array()}, {"polygons", Json::array()}, {"version", 2}}},
+      {"groundStation", "colmap_seapoint"},
+      {"mission", mission},
+      {"rallyPoints", {{"points", Json::array()}, {"version", 2}}},
+      {"version", 1}};
   return plan.dump(1) + "\n";
 }
 

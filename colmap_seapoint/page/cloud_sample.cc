@@ -21,10 +21,10 @@ void Put16(double value, std::vector<uint8_t>* bytes) {
 }  // namespace
 
 PointChooser::PointChooser(uint64_t total, uint64_t wanted)
-    : limit_(total <= wanted ? uint64_t{1} << 32
-                             : static_cast<uint64_t>(std::ldexp(1.0, 32) *
-                                                     static_cast<double>(wanted) /
-                                                     static_cast<double>(total))) {}
+    : limit_(total <= wanted
+                 ? uint64_t{1} << 32
+                 : static_cast<uint64_t>(std::ldexp(1.0, 32) * static_cast<double>(wanted) /
+                                         static_cast<double>(total))) {}
 
 bool PointChooser::Takes(uint64_t index) const {
   uint64_t h = (index + 1) * 0x9e3779b97f4a7c15ULL;

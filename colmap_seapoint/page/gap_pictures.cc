@@ -36,9 +36,8 @@ std::optional<Eigen::Vector2d> MiddleIn(const SparseModel& model, int image_idx,
 // Those that show the gap's middle first.
 std::vector<int> ChoosePictures(const Gap& gap, const SparseModel& model) {
   std::vector<int> chosen = gap.pictures;
-  std::stable_partition(chosen.begin(), chosen.end(), [&](int i) {
-    return MiddleIn(model, i, gap.centroid).has_value();
-  });
+  std::stable_partition(chosen.begin(), chosen.end(),
+                        [&](int i) { return MiddleIn(model, i, gap.centroid).has_value(); });
   chosen.resize(std::min(chosen.size(), kPicturesOfGap));
   return chosen;
 }
@@ -121,7 +120,8 @@ std::vector<std::vector<GapPicture>> CutGapPictures(
   std::map<int, std::vector<Wanted>> by_picture;
   for (size_t g = 0; g < std::min(result.gaps.size(), kGapsWithPictures); ++g) {
     const std::vector<int> chosen = ChoosePictures(result.gaps[g], model);
-    for (size_t slot = 0; slot < chosen.size(); ++slot) by_picture[chosen[slot]].push_back({g, slot});
+    for (size_t slot = 0; slot < chosen.size(); ++slot)
+      by_picture[chosen[slot]].push_back({g, slot});
     made[g].resize(chosen.size());
   }
   const std::vector<std::pair<int, std::vector<Wanted>>> work(by_picture.begin(), by_picture.end());

@@ -12,9 +12,9 @@
 namespace colmap_seapoint {
 
 struct GapPicture {
-  std::string name;    // of the picture
+  std::string name;        // of the picture
   bool shows_gap = false;  // the gap's middle lies in it
-  ColorImage crop;     // up to kGapPictureSide pixels across
+  ColorImage crop;         // up to kGapPictureSide pixels across
   // Where the gap's outline lies in the crop, pixels; empty where it does not lie in it whole
   // enough to be drawn.
   std::vector<std::vector<Eigen::Vector2d>> outline;

@@ -110,12 +110,12 @@ GroundMap DrawRamp(const GroundLayer& layer, const Extent& extent, const RampKin
   const std::pair<double, double> ends = EndsOf(layer, value_of);
   const double span = ends.second - ends.first;
   GroundMap map = {kind.key, kind.title, kind.note, {}, {}};
-  map.picture = Draw(layer, extent,
-                     [&](const GroundCell& cell, int x, int y) -> std::optional<Color> {
-                       const std::optional<double> value = value_of(cell, x, y);
-                       if (!value) return std::nullopt;
-                       return RampColor((*value - ends.first) / span);
-                     });
+  map.picture =
+      Draw(layer, extent, [&](const GroundCell& cell, int x, int y) -> std::optional<Color> {
+        const std::optional<double> value = value_of(cell, x, y);
+        if (!value) return std::nullopt;
+        return RampColor((*value - ends.first) / span);
+      });
   for (int k = 0; k <= 4; ++k) {
     map.legend.push_back(
         {Hex(RampColor(0.25 * k)),
@@ -125,31 +125,34 @@ GroundMap DrawRamp(const GroundLayer& layer, const Extent& extent, const RampKin
 }
 
 GroundMap DrawCauses(const GroundLayer& layer, const Extent& extent) {
-  GroundMap map = {"causes", "Why it is missing",
-                   "Every cell that is not covered, also those of gaps too small to be listed.", {},
+  GroundMap map = {"causes",
+                   "Why it is missing",
+                   "Every cell that is not covered, also those of gaps too small to be listed.",
+                   {},
                    {}};
-  map.picture =
-      Draw(layer, extent, [](const GroundCell& cell, int, int) -> std::optional<Color> {
-        if (!cell.is_expected || cell.is_covered) return std::nullopt;
-        return CauseColor(cell.cause);
-      });
+  map.picture = Draw(layer, extent, [](const GroundCell& cell, int, int) -> std::optional<Color> {
+    if (!cell.is_expected || cell.is_covered) return std::nullopt;
+    return CauseColor(cell.cause);
+  });
   return map;
 }
 
 GroundMap DrawCoverage(const GroundLayer& layer, const Extent& extent) {
   constexpr Color kCovered = {0, 114, 178}, kFromAfar = {86, 180, 233}, kThin = {240, 228, 66},
                   kMissing = {213, 94, 0};
-  GroundMap map = {"coverage", "What is covered", "Blank: nothing was expected there.", {},
+  GroundMap map = {"coverage",
+                   "What is covered",
+                   "Blank: nothing was expected there.",
+                   {},
                    {{Hex(kCovered), "covered"},
                     {Hex(kFromAfar), "covered as finely as far pictures can"},
                     {Hex(kThin), "almost: too few points"},
                     {Hex(kMissing), "not covered"}}};
-  map.picture =
-      Draw(layer, extent, [&](const GroundCell& cell, int, int) -> std::optional<Color> {
-        if (!cell.is_expected) return std::nullopt;
-        if (cell.is_covered) return cell.is_from_afar ? kFromAfar : kCovered;
-        return cell.is_thin ? kThin : kMissing;
-      });
+  map.picture = Draw(layer, extent, [&](const GroundCell& cell, int, int) -> std::optional<Color> {
+    if (!cell.is_expected) return std::nullopt;
+    if (cell.is_covered) return cell.is_from_afar ? kFromAfar : kCovered;
+    return cell.is_thin ? kThin : kMissing;
+  });
   return map;
 }
 
@@ -166,10 +169,10 @@ GroundMap DrawRelief(const GroundLayer& layer, const Extent& extent, double cell
     if (cell.count == 0) return std::nullopt;
     return cell.height;
   };
-  GroundMap map = DrawRamp(layer, extent,
-                           {"relief", "Relief", "Heights, in slanting light; blank: no points.",
-                            "%.3g", 1, " " + unit},
-                           height);
+  GroundMap map = DrawRamp(
+      layer, extent,
+      {"relief", "Relief", "Heights, in slanting light; blank: no points.", "%.3g", 1, " " + unit},
+      height);
   for (int b = 0; b < extent.height; ++b) {
     for (int a = 0; a < extent.width; ++a) {
       const int x = extent.x0 + a * extent.step + extent.step / 2;
@@ -192,14 +195,14 @@ std::vector<GroundMap> DrawRamps(const GroundLayer& layer, const Extent& extent,
                                  const CompletenessResult& result, const std::string& unit) {
   std::vector<GroundMap> maps;
   const double cell_side = result.ground.cell_side;
-  maps.push_back(DrawRamp(
-      layer, extent,
-      {"density", "Points", "Points on a square of the wanted spacing; one is asked for.", "%.2g",
-       1, ""},
-      [&](const GroundCell& cell, int, int) -> std::optional<double> {
-        if (!cell.is_expected || cell.count == 0) return std::nullopt;
-        return cell.count / WantedPoints(cell.area, result.spacing);
-      }));
+  maps.push_back(
+      DrawRamp(layer, extent,
+               {"density", "Points", "Points on a square of the wanted spacing; one is asked for.",
+                "%.2g", 1, ""},
+               [&](const GroundCell& cell, int, int) -> std::optional<double> {
+                 if (!cell.is_expected || cell.count == 0) return std::nullopt;
+                 return cell.count / WantedPoints(cell.area, result.spacing);
+               }));
   maps.push_back(DrawRamp(layer, extent,
                           {"views", "Pictures that see it",
                            "Usable pictures, of every fourth covered cell.", "%.0f", 1, ""},
@@ -220,8 +223,8 @@ std::vector<GroundMap> DrawRamps(const GroundLayer& layer, const Extent& extent,
                }));
   const bool is_metric = unit == "m";
   maps.push_back(DrawRamp(layer, extent,
-                          {"detail", "Detail", "What a pixel of the nearest picture covers.", "%.2g",
-                           is_metric ? 1000.0 : 1.0, is_metric ? " mm" : " " + unit},
+                          {"detail", "Detail", "What a pixel of the nearest picture covers.",
+                           "%.2g", is_metric ? 1000.0 : 1.0, is_metric ? " mm" : " " + unit},
                           [](const GroundCell& cell, int, int) -> std::optional<double> {
                             if (!cell.is_expected || !(cell.gsd > 0) || !std::isfinite(cell.gsd)) {
                               return std::nullopt;
@@ -248,7 +251,8 @@ GroundMaps DrawGroundMaps(const CompletenessResult& result, const std::string& u
   drawn.bottom = drawn.top - extent.height * extent.step * side;
   drawn.maps.push_back(DrawCauses(layer, extent));
   drawn.maps.push_back(DrawCoverage(layer, extent));
-  for (GroundMap& map : DrawRamps(layer, extent, result, unit)) drawn.maps.push_back(std::move(map));
+  for (GroundMap& map : DrawRamps(layer, extent, result, unit))
+    drawn.maps.push_back(std::move(map));
   return drawn;
 }
 

@@ -7,8 +7,8 @@
 namespace colmap_seapoint {
 
 struct PageContent {
-  std::string title;   // plain text, as the answer
-  std::string answer;  // readable without scripts
+  std::string title;                  // plain text, as the answer
+  std::string answer;                 // readable without scripts
   std::vector<std::string> sections;  // SectionJson, one a model
   std::vector<std::string> names;     // of the sections: "0"
   std::string job;                    // JSON of the run: RunReport's, without its inputs

@@ -85,8 +85,9 @@ Json CausesJson() {
   for (int c = 1; c < kNumGapCauses; ++c) {
     const auto cause = static_cast<GapCause>(c);
     const std::array<uint8_t, 3> color = CauseColor(cause);
-    causes[GapCauseName(cause)] = {{"text", CauseText(cause)},
-                                   {"color", Format("#%02x%02x%02x", color[0], color[1], color[2])}};
+    causes[GapCauseName(cause)] = {
+        {"text", CauseText(cause)},
+        {"color", Format("#%02x%02x%02x", color[0], color[1], color[2])}};
   }
   return causes;
 }
@@ -103,15 +104,17 @@ Json MapsJson(const SectionInput& input) {
                     {"src", PngUri(map.picture)},
                     {"legend", std::move(legend)}});
   }
-  Json json = {{"left", maps.left},     {"top", maps.top},   {"right", maps.right},
-               {"bottom", maps.bottom}, {"list", std::move(list)}};
+  Json json = {{"left", maps.left},
+               {"top", maps.top},
+               {"right", maps.right},
+               {"bottom", maps.bottom},
+               {"list", std::move(list)}};
   if (input.mosaic) {
     const auto& m = input.mosaic->plan_from_pixel;
     json["mosaic"] = {{"src", JpegUri(input.mosaic->picture, kMosaicQuality)},
                       {"width", input.mosaic->picture.width},
                       {"height", input.mosaic->picture.height},
-                      {"plan_from_pixel",
-                       {m(0, 0), m(1, 0), m(0, 1), m(1, 1), m(0, 2), m(1, 2)}}};
+                      {"plan_from_pixel", {m(0, 0), m(1, 0), m(0, 1), m(1, 1), m(0, 2), m(1, 2)}}};
   }
   Json layers = Json::array();
   for (const auto& [name, picture] : input.layers) {
@@ -138,9 +141,12 @@ Json GapPictureJson(const GapPicture& picture) {
 }
 
 Json PassJson(const ClosingPass& pass, const PlanWriter& plan) {
-  return {{"corners", plan.Line(pass.corners)},  {"heading_deg", std::round(pass.heading_deg)},
-          {"altitude", plan.Number(pass.altitude)}, {"tilt_deg", std::round(pass.tilt_deg)},
-          {"lines", pass.num_lines},             {"pictures", pass.num_pictures},
+  return {{"corners", plan.Line(pass.corners)},
+          {"heading_deg", std::round(pass.heading_deg)},
+          {"altitude", plan.Number(pass.altitude)},
+          {"tilt_deg", std::round(pass.tilt_deg)},
+          {"lines", pass.num_lines},
+          {"pictures", pass.num_pictures},
           {"length", plan.Number(pass.length)}};
 }
 
@@ -190,9 +196,8 @@ Json TrackJson(const SectionInput& input, const PlanWriter& plan) {
     pairs.push_back(Json{pair.image1, pair.image2, std::round(pair.overlap * 1000) / 1000,
                          pair.num_points, pair.skipped});
   }
-  return {{"pictures", std::move(pictures)},
-          {"hints", std::move(hints)},
-          {"pairs", std::move(pairs)}};
+  return {
+      {"pictures", std::move(pictures)}, {"hints", std::move(hints)}, {"pairs", std::move(pairs)}};
 }
 
 Json CloudJson(const PackedCloud& cloud) {

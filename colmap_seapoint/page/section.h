@@ -25,7 +25,7 @@ struct SectionInput {
   std::string answer;  // CompletenessLine
   GroundMaps maps;
   std::optional<Mosaic> mosaic;
-  std::vector<std::vector<GapPicture>> gap_pictures;  // by position in result->gaps
+  std::vector<std::vector<GapPicture>> gap_pictures;       // by position in result->gaps
   std::vector<std::pair<std::string, ColorImage>> layers;  // of walls and undersides, by name
   PackedCloud cloud;
   std::vector<TrackPicture> track;

@@ -117,8 +117,8 @@ std::vector<TrackHint> HintsOf(const TrackInput& input, const std::vector<TrackP
   std::vector<TrackHint> hints;
   const auto add = [&](const std::function<bool(const TrackPicture&)>& holds,
                        const std::function<std::string(size_t, size_t)>& text) {
-    for (TrackHint& hint :
-         Stretches(track.size(), [&](size_t i) { return holds(track[i]); }, text)) {
+    for (TrackHint& hint : Stretches(
+             track.size(), [&](size_t i) { return holds(track[i]); }, text)) {
       hints.push_back(std::move(hint));
     }
   };
@@ -127,17 +127,17 @@ std::vector<TrackHint> HintsOf(const TrackInput& input, const std::vector<TrackP
         double least = 1;
         for (size_t i = first; i <= last; ++i) least = std::min(least, track[i].overlap);
         return Format("too fast, or turned: the next picture shows only %.0f %% of this one",
-                         100 * least);
+                      100 * least);
       });
   add([&](const TrackPicture& p) { return p.distance > kTooHigh * distance && distance > 0; },
       [&](size_t first, size_t) {
         return Format("too high: %.1f times as far from the ground as usual",
-                         track[first].distance / distance);
+                      track[first].distance / distance);
       });
   add([&](const TrackPicture& p) { return p.distance > 0 && p.distance < kTooClose * distance; },
       [&](size_t first, size_t) {
         return Format("too close: %.2f of the usual distance, so that less is seen twice",
-                         track[first].distance / distance);
+                      track[first].distance / distance);
       });
   add(
       [&](const TrackPicture& p) {
@@ -145,7 +145,7 @@ std::vector<TrackHint> HintsOf(const TrackInput& input, const std::vector<TrackP
       },
       [&](size_t first, size_t) {
         return Format("too dark: %.2f of the usual brightness",
-                         brightness_of(track[first]) / brightness);
+                      brightness_of(track[first]) / brightness);
       });
   std::stable_sort(hints.begin(), hints.end(), [](const TrackHint& a, const TrackHint& b) {
     return a.last - a.first > b.last - b.first;

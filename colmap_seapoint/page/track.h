@@ -31,7 +31,7 @@ struct TrackInput {
 std::vector<TrackPicture> FollowTrack(const TrackInput& input);
 
 struct TrackHint {
-  std::string text;    // one line, without the pictures' names
+  std::string text;         // one line, without the pictures' names
   int first = 0, last = 0;  // positions in the track that it holds for
 };
 

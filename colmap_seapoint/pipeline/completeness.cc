@@ -213,8 +213,7 @@ void CheckResult(const CompletenessReporterOptions& options, const CompletenessR
 }
 
 CompletenessResult Assess(const CompletenessReporterOptions& options, const SparseModel& model,
-                          const std::optional<ModelUnits>& units, Seen* seen,
-                          RunReport* report) {
+                          const std::optional<ModelUnits>& units, Seen* seen, RunReport* report) {
   CompletenessInput input;
   input.model = &model;
   input.num_points = CloudReader(options.cloud_path).NumPoints();
@@ -295,8 +294,9 @@ void WriteMaps(const CompletenessResult& result, const std::string& unit, Output
 void CompletenessReporterOptions::Bind(OptionTable* table) {
   table->AddRequired("input_path", &input_path, "COLMAP model, binary or text");
   table->AddRequired("cloud_path", &cloud_path, "cloud in the model's frame, PLY");
-  table->AddRequired("output_path", &output_path,
-                     "folder for index.html, completeness.json, gaps.geojson, gaps.csv, maps and run.json");
+  table->AddRequired(
+      "output_path", &output_path,
+      "folder for index.html, completeness.json, gaps.geojson, gaps.csv, maps and run.json");
   table->Add("image_path", &image_path,
              "folder of the pictures, also of those that are in no model; empty = nothing is known "
              "of texture, blur and lost pictures",
@@ -308,9 +308,10 @@ void CompletenessReporterOptions::Bind(OptionTable* table) {
              "GeoJSON with the polygons that were to be covered, in WGS84 where the model is "
              "georeferenced, else in its x and y; empty = all that pictures outline",
              "ours");
-  table->Add("map_path", &map_path,
-             "folder that orthomosaic wrote, for the page's map; empty = the page has none under it",
-             "ours");
+  table->Add(
+      "map_path", &map_path,
+      "folder that orthomosaic wrote, for the page's map; empty = the page has none under it",
+      "ours");
   completeness.Bind(table);
   run.Bind(table);
   table->MarkOutput("output_path");
@@ -321,7 +322,8 @@ CompletenessReport ReportCompleteness(const CompletenessReporterOptions& options
   CompletenessReport done;
   RunReport& report = done.run = StartReport("completeness_reporter", options, options.run);
   OutputFolder folder(options.output_path, "--output_path");
-  folder.Claim({"index.html", "completeness.json", "gaps.geojson", "gaps.csv", "map.png", "run.json"});
+  folder.Claim(
+      {"index.html", "completeness.json", "gaps.geojson", "gaps.csv", "map.png", "run.json"});
   {
     const StageTimer timer(&report, "completeness_reporter");
     const std::optional<ModelUnits> units = ReadModelUnits(options.input_path);

@@ -91,10 +91,10 @@ void ReportCompletenessOfModels(const AutomaticReconstructorOptions& options,
   for (ModelSummary& model : *models) {
     if (model.densification.points == 0) continue;
     const CompletenessReporterOptions reporter = ReporterOptions(options, workspace, model);
-    const Stage stage = {kPrefix + model.name, kCompletenessVersion,
-                         InputsOf(reporter, model, mapper_fingerprint,
-                                  model.map_path.empty() ? "" : map, *report),
-                         "The report in " + reporter.output_path + " is there already"};
+    const Stage stage = {
+        kPrefix + model.name, kCompletenessVersion,
+        InputsOf(reporter, model, mapper_fingerprint, model.map_path.empty() ? "" : map, *report),
+        "The report in " + reporter.output_path + " is there already"};
     model.completeness = AnswerOf(reporter, stage, model.name, state, report);
   }
 }

@@ -8,8 +8,8 @@ const fill = (element, attributes, children) => {
     if (name.startsWith('on')) element.addEventListener(name.slice(2), value);
     else element.setAttribute(name, value === true ? '' : value);
   }
-  for (const child of children.flat()) {
-    if (child === undefined || child === null || child === '') continue;
+  for (const child of children.flat(2)) {
+    if (child === undefined || child === null || child === false || child === '') continue;
     element.append(child);
   }
   return element;
@@ -30,7 +30,8 @@ const lengthText = (value, unit) => {
   if (Math.abs(value) < 0.01) return digits(1000 * value, 2) + ' mm';
   return Math.abs(value) < 1 ? digits(100 * value, 2) + ' cm' : digits(value) + ' m';
 };
-const areaText = (value, unit) => digits(value) + (unit === 'm' ? ' m²' : ' square units');
+const areaUnit = (unit) => unit === 'm' ? 'm²' : 'square units';
+const areaText = (value, unit) => `${digits(value)} ${areaUnit(unit)}`;
 const secondsText = (seconds) => {
   if (seconds < 60) return seconds.toFixed(1) + ' s';
   const minutes = Math.round(seconds / 60);

@@ -16,10 +16,10 @@ const wider = (box, share) => {
   const margin = share * Math.max(box.width, box.height);
   return { x: box.x - margin, y: box.y - margin, width: box.width + 2 * margin, height: box.height + 2 * margin };
 };
-const mapBox = ({ map, gaps, route, track }) => {
+const mapBox = ({ map, gaps, track }) => {
   const corners = map.list.length > 0 ? [[map.left, map.top], [map.right, map.bottom]] :
     track.pictures.map((picture) => picture.center);
-  return wider(boxOf([...corners, ...gaps.flatMap((gap) => gap.outline.flat())]), 0.03);
+  return wider(boxOf([...corners, ...gaps.flatMap((gap) => [...gap.outline.flat(), ...gap.pass.corners])]), 0.03);
 };
 
 // Corners of the passes, in the order in which they are swum.
@@ -99,7 +99,7 @@ const layerGroups = (section, choose) => {
   const { pictures } = section.track;
   return {
     gaps: draw('g', {}, section.gaps.map((gap) => gapShape(section, gap))),
-    route: draw('g', {}, corners.length > 0 && [
+    route: draw('g', { display: 'none' }, corners.length > 0 && [
       draw('polyline', { class: 'route', points: lineOf(corners) }),
       draw('polyline', { class: 'route inner', points: lineOf(corners) })]),
     track: draw('g', { display: 'none' },
@@ -134,6 +134,7 @@ const makeMap = (section, choose) => {
   causePatterns(section, box.width / 700), ground, groups.gaps, groups.route, groups.track, groups.numbers);
   const marks = [...groups.numbers.children], scale = make('p', { class: 'note' });
   const frame = make('div', { class: 'map' }, svg);
+  svg.style.aspectRatio = `${box.width} / ${box.height}`;
   const view = makeView(svg, box, (changed) => {
     placeMarks(svg, marks, changed);
     frame.classList.toggle('near', !changed.isWhole());
@@ -170,5 +171,5 @@ const mapChoices = (section, grounds, show, groups) => {
     make('select', { id, onchange: (event) => show(event.target.value) },
       grounds.map((ground) => make('option', { value: ground.key }, ground.title))),
     checkBox('gaps', groups.gaps, true), checkBox('numbers', groups.numbers, true),
-    checkBox('route', groups.route, true), checkBox('pictures', groups.track, false));
+    checkBox('route', groups.route, false), checkBox('pictures', groups.track, false));
 };

@@ -6,7 +6,7 @@ const sectionFacts = (section) => {
   const missing = gaps.reduce((sum, gap) => sum + gap.area, 0);
   return make('dl', { class: 'facts' },
     fact('covered', `${percent(at.share)} ± ${(100 * figures.tolerance).toFixed(1)}`, true),
-    fact('covered of what was asked for', `${areaText(at.area, unit)} of ${areaText(figures.expected_area, unit)}`),
+    fact('covered of what was asked for', `${digits(at.area)} of ${areaText(figures.expected_area, unit)}`),
     fact('at a spacing of', lengthText(at.spacing, unit)),
     fact('gaps to go back to', gaps.length === 0 ? 'none' : `${gaps.length}, ${areaText(missing, unit)}`),
     gaps.length > 0 && fact('route over all', lengthText(figures.route_length, unit)));
@@ -64,7 +64,7 @@ const makeSection = (section) => {
     heading && make('p', {}, section.answer),
     sectionFacts(section), map.figure,
     make('h3', {}, section.gaps.length > 0 ? 'Where to go back to' : 'No gap to go back to'),
-    section.gaps.length > 0 && make('p', { class: 'note' }, 'The most area for a way first. The way of each pass is dashed on the map.'),
+    section.gaps.length > 0 && make('p', { class: 'note' }, 'The most area for a way first. The map shows the route when asked to.'),
     slate && make('p', { class: 'tools' }, make('button', { type: 'button', class: 'main', onclick: () => printSlate(slate) }, 'Print the diver\'s slate (A4)')),
     section.gaps.length > 0 && makeGaps(section, map),
     make('h3', {}, 'In three dimensions'), makeCloud(section),

@@ -4,6 +4,12 @@ const stopsOnSlate = 8;
 const slateStops = (section) => section.route.map((stop, k) => ({ ...section.gaps[stop.gap], number: k + 1,
   reversed: stop.is_reversed })).slice(0, stopsOnSlate);
 
+// Its end tells pictures apart.
+const slateName = (name) => {
+  const short = shortName(name);
+  return short.length > 14 ? '…' + short.slice(-12) : short;
+};
+
 const stopCorners = (stop) => stop.reversed ? [...stop.pass.corners].reverse() : stop.pass.corners;
 const headingFrom = ([x0, y0], [x1, y1]) => Math.round((Math.atan2(x1 - x0, y1 - y0) * 180 / Math.PI + 360) % 360);
 const legText = (section, from, to) => `${lengthText(Math.hypot(to[0] - from[0], to[1] - from[1]), section.unit)} at ${headingFrom(from, to)}°`;
@@ -17,13 +23,13 @@ const stopPicture = (stop) => {
 };
 
 const stopEntry = (section, stop, before) => {
-  const corners = stopCorners(stop), names = stop.names.map(shortName);
+  const corners = stopCorners(stop), names = stop.names.map(slateName);
   return make('li', { class: 'stop' }, stopPicture(stop), make('div', { class: 'words' },
     make('p', { class: 'number' }, `${stop.number}. gap ${stop.id}`),
     before && make('p', {}, 'swim ' + legText(section, before, corners[0])),
     names.length > 0 && make('p', {}, make('strong', {}, 'towards picture ' + names[0]), names[1] ? ', then ' + names[1] : ''),
-    make('p', {}, `${plural(stop.pass.lines, 'line', 'lines')}, first ${legText(section, corners[0], corners[1])}`),
-    make('p', {}, `${lengthText(stop.pass.altitude, section.unit)} above the ground, ${plural(stop.pass.pictures, 'picture', 'pictures')}`),
+    make('p', {}, `${plural(stop.pass.lines, 'line', 'lines')}, first ${legText(section, corners[0], corners[1])}, ` +
+      `${lengthText(stop.pass.altitude, section.unit)} up, ${plural(stop.pass.pictures, 'picture', 'pictures')}`),
     make('p', {}, section.causes[stop.cause].text)));
 };
 
@@ -31,7 +37,7 @@ const stopEntry = (section, stop, before) => {
 const slatePlan = (section, stops) => {
   const box = wider(boxOf([...section.track.pictures.map((picture) => picture.center),
     ...stops.flatMap((stop) => [...stop.outline.flat(), ...stop.pass.corners])]), 0.05);
-  const unit = Math.max(box.width / 718, box.height / 317);  // of the 190 x 84 mm, in 96ths of an inch
+  const unit = Math.max(box.width / 718, box.height / 287);  // of the 190 x 76 mm, in 96ths of an inch
   const line = (corners, width, dashes) => draw('polyline', { points: lineOf(corners), fill: 'none', stroke: '#000',
     'stroke-width': width * unit, 'stroke-dasharray': dashes && dashes.map((d) => d * unit).join(' ') });
   const mark = (stop) => {

@@ -11,7 +11,7 @@ const worstOf = (pictures, count) => {
 };
 
 const trackChart = (pictures) => {
-  const width = 1000, height = 190, left = 44, bottom = 30, top = 10;
+  const width = window.innerWidth < 600 ? 420 : 1000, height = 190, left = 44, bottom = 30, top = 10;
   const bars = worstOf(pictures, chartBars), step = (width - left) / bars.length;
   const y = (share) => top + (1 - share) * (height - top - bottom);
   const bar = (picture, k) => picture.overlap < 0 ? null : draw('rect', { x: left + k * step, y: y(picture.overlap),

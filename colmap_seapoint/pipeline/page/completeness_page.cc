@@ -56,8 +56,8 @@ std::string JobBeside(const fs::path& cloud_path) {
   if (in == nullptr) return "";
   try {
     Json job = Json::parse(std::string{std::istreambuf_iterator<char>(*in), {}});
-    for (const char* name : {"command", "version", "images_in", "images_used", "points",
-                             "left_out", "stages"}) {
+    for (const char* name :
+         {"command", "version", "images_in", "images_used", "points", "left_out", "stages"}) {
       if (!job.contains(name)) return "";  // another program's
     }
     job.erase("inputs");

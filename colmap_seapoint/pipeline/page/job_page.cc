@@ -44,8 +44,7 @@ void WriteJobPage(const Workspace& workspace, const std::vector<ModelSummary>& m
   page.answer = AnswerOf(models, report);
   for (const ModelSummary& model : models) {
     if (model.completeness.empty()) continue;
-    std::string section =
-        SectionOf(workspace.report / "completeness" / model.name / "index.html");
+    std::string section = SectionOf(workspace.report / "completeness" / model.name / "index.html");
     if (section.empty()) continue;
     page.sections.push_back(std::move(section));
     page.names.push_back(model.name);
