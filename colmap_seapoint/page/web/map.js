@@ -16,10 +16,12 @@ const wider = (box, share) => {
   const margin = share * Math.max(box.width, box.height);
   return { x: box.x - margin, y: box.y - margin, width: box.width + 2 * margin, height: box.height + 2 * margin };
 };
-const mapBox = ({ map, gaps, track }) => {
+// Passes reach beyond what is to be covered: they count when the route is shown.
+const mapBox = ({ map, gaps, track }, withRoute) => {
   const corners = map.list.length > 0 ? [[map.left, map.top], [map.right, map.bottom]] :
     track.pictures.map((picture) => picture.center);
-  return wider(boxOf([...corners, ...gaps.flatMap((gap) => [...gap.outline.flat(), ...gap.pass.corners])]), 0.03);
+  const passes = withRoute ? gaps.flatMap((gap) => gap.pass.corners) : [];
+  return wider(boxOf([...corners, ...passes, ...gaps.flatMap((gap) => gap.outline.flat())]), 0.03);
 };
 
 // Corners of the passes, in the order in which they are swum.
@@ -111,9 +113,10 @@ const layerGroups = (section, choose) => {
   };
 };
 
-const checkBox = (text, group, isOn) => make('label', {},
+const checkBox = (text, group, isOn, act) => make('label', {},
   make('input', { type: 'checkbox', checked: isOn, onchange: (event) => {
     group.setAttribute('display', event.target.checked ? 'inline' : 'none');
+    if (act) act(event.target.checked);
   } }), text);
 
 const viewButtons = (view) => make('div', { class: 'buttons', role: 'group', 'aria-label': 'Zoom' },
@@ -127,7 +130,7 @@ const mapText = (section) => {
 };
 
 const makeMap = (section, choose) => {
-  const box = mapBox(section);
+  const box = mapBox(section, false);
   const ground = draw('g', {}), groups = layerGroups(section, choose);
   const svg = draw('svg', { viewBox: `${box.x} ${box.y} ${box.width} ${box.height}`, role: 'group', tabindex: '0',
     'aria-label': `Map of the survey with ${plural(section.gaps.length, 'gap', 'gaps')}` },
@@ -153,7 +156,7 @@ const makeMap = (section, choose) => {
   };
   if (grounds.length > 0) show(grounds[0].key);
   requestAnimationFrame(() => view.refresh());
-  return { view, marks, figure: make('figure', {}, mapChoices(section, grounds, show, groups), frame, scale, legend,
+  return { view, marks, figure: make('figure', {}, mapChoices(section, grounds, show, groups, view), frame, scale, legend,
     causeLegend(section), make('figcaption', {}, mapText(section))) };
 };
 
@@ -164,12 +167,12 @@ const groundLegend = (ground) => make('ul', { class: 'legend', 'aria-label': gro
   ground.legend.map(([color, text]) => make('li', {},
     make('span', { class: 'swatch', 'aria-hidden': 'true', style: `background:${color}` }), text)));
 
-const mapChoices = (section, grounds, show, groups) => {
+const mapChoices = (section, grounds, show, groups, view) => {
   const id = 'ground-' + section.index;
   return make('div', { class: 'choices' },
     make('label', { for: id }, 'Show '),
     make('select', { id, onchange: (event) => show(event.target.value) },
       grounds.map((ground) => make('option', { value: ground.key }, ground.title))),
     checkBox('gaps', groups.gaps, true), checkBox('numbers', groups.numbers, true),
-    checkBox('route', groups.route, false), checkBox('pictures', groups.track, false));
+    checkBox('route', groups.route, false, (isOn) => view.frame(mapBox(section, isOn))), checkBox('pictures', groups.track, false));
 };

@@ -42,6 +42,12 @@ const makeView = (svg, box, onChange) => {
     },
     step(dx, dy) { view.shift(dx * shown.width / 6, dy * shown.height / 6); },
     reset() { shown = { ...whole }; apply(); },
+    // Another box is all that there is to see.
+    frame(other) {
+      Object.assign(whole, other);
+      svg.style.aspectRatio = `${whole.width} / ${whole.height}`;
+      view.reset();
+    },
     // A box with as much again around it.
     show(target) {
       const side = Math.max(2.5 * target.width, 2.5 * target.height * whole.width / whole.height, whole.width / 12);
