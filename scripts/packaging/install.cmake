@@ -14,6 +14,8 @@ install(FILES ${PROJECT_SOURCE_DIR}/colmap_seapoint/README.md
   DESTINATION ${package_doc_dir}/colmap_seapoint COMPONENT program)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE
   DESTINATION ${package_doc_dir} RENAME copyright COMPONENT program)
+install(FILES ${PROJECT_SOURCE_DIR}/colmap_seapoint/page/web/three/LICENSE
+  DESTINATION ${package_doc_dir} RENAME copyright.three.js COMPONENT program)
 
 # The program itself writes them, from its option tables. Not where it cannot, or need not, run.
 if(NOT CMAKE_CROSSCOMPILING AND NOT SEAPOINT_SANITIZE)

@@ -42,7 +42,11 @@ const plural = (count, one, many) => count + ' ' + (count === 1 ? one : many);
 const shortName = (name) => name.replace(/^.*\//, '').replace(/\.[^.]*$/, '');
 
 const readJson = (element) => JSON.parse(element.textContent);
-const bytesOf = (base64) => Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+const bytesOf = (base64) => {
+  const text = atob(base64), bytes = new Uint8Array(text.length);
+  for (let k = 0; k < bytes.length; ++k) bytes[k] = text.charCodeAt(k);
+  return bytes;
+};
 
 const table = (caption, head, rows) =>
   make('div', { class: 'scroll', tabindex: '0', role: 'region', 'aria-label': caption },

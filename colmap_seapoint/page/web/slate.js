@@ -68,7 +68,7 @@ const makeSlate = (section) => {
   return make('section', { class: 'slate', 'aria-label': title },
     make('div', { class: 'head' }, make('h2', {}, title),
       make('span', {}, `${plural(section.gaps.length, 'gap', 'gaps')}, way ${lengthText(section.figures.route_length, section.unit)}` +
-        (left > 0 ? `; the other ${left} are on the page` : ''))),
+        (left > 0 ? `; ${left} more on the page` : ''))),
     make('p', {}, section.is_north_up ? 'Headings from north.' : 'Headings from the plan\'s up (not north): turn the plan until landmarks fit.'),
     make('div', { class: 'plan' }, slatePlan(section, stops)),
     make('ol', { class: 'stops' }, stops.map((stop, k) =>
