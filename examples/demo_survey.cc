@@ -18,6 +18,7 @@
 #include "colmap_seapoint/io/image/image_file.h"
 #include "examples/subcommands.h"
 #include "examples/survey/control.h"
+#include "examples/survey/paths/dive_passes.h"
 #include "examples/survey/score.h"
 #include "examples/survey/score_markers.h"
 #include "examples/survey/survey.h"
@@ -96,11 +97,15 @@ void AddMarkerOptions(po::options_description* description, SurveyOptions* o) {
 
 int Generate(const std::vector<std::string>& arguments) {
   SurveyOptions o;
-  std::string output_path, path = SurveyPathName(o.path), camera_model = "OPENCV", port = "none";
+  std::string output_path, passes_path, path = SurveyPathName(o.path), camera_model = "OPENCV",
+                                        port = "none";
   po::options_description description("demo_survey generate");
   auto add = description.add_options();
   add("help,h", "this text");
   add("output_path", po::value(&output_path)->required(), "folder to write to");
+  add("passes_path", po::value(&passes_path),
+      "gaps.geojson of completeness_reporter on the survey of these options: the pictures of its "
+      "passes are made, as a second dive; truth/sparse holds both dives");
   add("seed", Default(&o.seed), "of everything random");
   add("path", Default(&path), "strips, random, swim, circle, statue, wall or descent");
   add("camera_model", Default(&camera_model), "OPENCV or OPENCV_FISHEYE");
@@ -120,8 +125,19 @@ int Generate(const std::vector<std::string>& arguments) {
   const std::filesystem::path dir = output_path;
   CheckWritableDir(dir / "images");
   const Timer timer;
-  const SurveyTruth truth = MakeSurveyTruth(o);
+  std::vector<PosedImage> passes;
+  if (!passes_path.empty()) {
+    DivePasses dive = PlanPasses(passes_path, o.image_format, o.seed, o.jitter);
+    if (dive.num_tilted > 0)
+      std::fprintf(stderr, "%d passes along walls left out\n", dive.num_tilted);
+    passes = std::move(dive.images);
+  }
+  SurveyTruth truth = MakeSurveyTruth(o, passes);
   WriteSurveyTruth(dir, o, truth);
+  if (!passes.empty()) {
+    std::vector<PosedImage>& images = truth.model.images;
+    images.erase(images.begin(), images.end() - static_cast<std::ptrdiff_t>(passes.size()));
+  }
   size_t num_done = 0;
   RenderSurvey(o, truth, [&](const PosedImage& image, ColorImage&& picture) {
     WriteImage(dir / "images" / image.name, picture);

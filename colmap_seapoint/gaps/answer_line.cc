@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "colmap_seapoint/gaps/gap_colors.h"
+
 namespace colmap_seapoint {
 namespace {
 
@@ -16,29 +18,6 @@ std::string Formatted(const char* format, Values... values) {
 std::string SpacingText(double spacing, const GapPlaces& places) {
   if (places.Unit() != "m") return Formatted("%.3g ", spacing) + places.Unit();
   return spacing < 0.01 ? Formatted("%.2g mm", 1e3 * spacing) : Formatted("%.2g cm", 1e2 * spacing);
-}
-
-const char* CauseText(GapCause cause) {
-  switch (cause) {
-    case GapCause::kNeverImaged:
-      return "never imaged";
-    case GapCause::kImagedOnce:
-      return "imaged once only";
-    case GapCause::kNoTexture:
-      return "shows nothing that could be matched";
-    case GapCause::kBadPicture:
-      return "blurred or badly exposed";
-    case GapCause::kPoseLost:
-      return "its pictures are in no model";
-    case GapCause::kOccluded:
-      return "hidden but from one side";
-    case GapCause::kSmallParallax:
-      return "seen from nearly one place only";
-    case GapCause::kViewsDisagree:
-      return "its pictures disagree";
-    default:
-      return "";
-  }
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "colmap_seapoint/gaps/gap_colors.h"
+
 namespace colmap_seapoint {
 namespace {
 
@@ -17,28 +19,9 @@ constexpr int kLegendHeight = 96;
 constexpr size_t kNumDrawn = 25;
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 
-// Okabe and Ito's colours, red green blue.
 cv::Vec3b ColourOf(GapCause cause) {
-  switch (cause) {
-    case GapCause::kNeverImaged:
-      return {213, 94, 0};
-    case GapCause::kImagedOnce:
-      return {230, 159, 0};
-    case GapCause::kNoTexture:
-      return {240, 228, 66};
-    case GapCause::kBadPicture:
-      return {204, 121, 167};
-    case GapCause::kPoseLost:
-      return {0, 114, 178};
-    case GapCause::kOccluded:
-      return {86, 180, 233};
-    case GapCause::kSmallParallax:
-      return {255, 255, 255};
-    case GapCause::kViewsDisagree:
-      return {0, 158, 115};
-    default:
-      return {40, 40, 40};
-  }
+  const std::array<uint8_t, 3> color = CauseColor(cause);
+  return {color[0], color[1], color[2]};
 }
 
 struct Frame {

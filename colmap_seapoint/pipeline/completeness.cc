@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "colmap_seapoint/gaps/gap_files.h"
 #include "colmap_seapoint/gaps/gap_kml.h"
 #include "colmap_seapoint/gaps/gap_map.h"
+#include "colmap_seapoint/gaps/route_files.h"
 #include "colmap_seapoint/io/cloud/ply_reader.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
@@ -25,6 +27,7 @@
 #include "colmap_seapoint/io/outputs/output_folder.h"
 #include "colmap_seapoint/orthomosaic/ground/map_frame.h"
 #include "colmap_seapoint/pictures/picture_scale.h"
+#include "colmap_seapoint/pipeline/page/completeness_page.h"
 #include "colmap_seapoint/workspace/output_paths.h"
 #include "densify/completeness/assess_completeness.h"
 
@@ -98,9 +101,17 @@ std::vector<std::string> LostPictures(const CompletenessReporterOptions& options
   return lost;
 }
 
+// What the page shows beside the result: some points of the cloud, and how bright pictures are.
+struct Seen {
+  std::vector<ColoredPoint> points;
+  std::vector<double> brightness;  // by image_idx; -1: unknown
+};
+
 PictureFacts ReadFacts(const CompletenessReporterOptions& options, const PictureMasks& masks,
-                       const std::string& name) {
+                       const std::string& name, double* brightness) {
   const GrayImage luma = ReadGrayImage(fs::path(options.image_path) / name);
+  const uint64_t sum = std::accumulate(luma.data.begin(), luma.data.end(), uint64_t{0});
+  *brightness = static_cast<double>(sum) / static_cast<double>(luma.data.size());
   return MeasurePicture(luma, masks.Decode(name, masks.Open(name), luma.width, luma.height));
 }
 
@@ -130,8 +141,9 @@ class AssessmentProgress {
 // By image_idx. A picture that cannot be read is named, and counts as a bad one.
 std::vector<PictureFacts> MeasurePictures(const CompletenessReporterOptions& options,
                                           const SparseModel& model, AssessmentProgress* progress,
-                                          RunReport* report) {
+                                          Seen* seen, RunReport* report) {
   std::vector<PictureFacts> facts(model.images.size());
+  seen->brightness.assign(facts.size(), -1);
   if (options.image_path.empty()) return facts;
   const PictureMasks masks(options.mask_path);
   std::vector<std::string> problems(model.images.size());
@@ -140,7 +152,7 @@ std::vector<PictureFacts> MeasurePictures(const CompletenessReporterOptions& opt
   ParallelFor(options.run.num_threads, static_cast<int64_t>(facts.size()), [&](int64_t index) {
     const auto i = static_cast<size_t>(index);
     try {
-      facts[i] = ReadFacts(options, masks, model.images[i].name);
+      facts[i] = ReadFacts(options, masks, model.images[i].name, &seen->brightness[i]);
     } catch (const Error& e) {
       problems[i] = e.Finding();
     }
@@ -162,15 +174,19 @@ std::vector<PictureFacts> MeasurePictures(const CompletenessReporterOptions& opt
   return facts;
 }
 
+// Of the first reading some points are kept.
 void ReadPoints(const std::string& path, AssessmentProgress* progress,
-                const std::function<void(const ConfidentPoint&)>& take) {
+                const std::function<void(const ConfidentPoint&)>& take, Seen* seen) {
   constexpr uint64_t kPointsOfUpdate = 100000;
   CloudReader reader(path);
   CloudVertex vertex;
   uint64_t num_read = 0;
+  const bool is_first = seen->points.empty();
+  const PointChooser chooser(reader.NumPoints(), kPagePoints);
   progress->BeginCloud();
   while (reader.Next(&vertex)) {
     take({{vertex.xyz, vertex.normal.cast<double>()}, vertex.confidence});
+    if (is_first && chooser.Takes(num_read)) seen->points.push_back({vertex.xyz, vertex.rgb});
     if (++num_read % kPointsOfUpdate == 0) progress->ReadPoints(num_read);
   }
   progress->ReadPoints(num_read);
@@ -197,7 +213,7 @@ void CheckResult(const CompletenessReporterOptions& options, const CompletenessR
 }
 
 CompletenessResult Assess(const CompletenessReporterOptions& options, const SparseModel& model,
-                          const std::optional<ModelUnits>& units, RunReport* report) {
+                          const std::optional<ModelUnits>& units, Seen* seen, RunReport* report) {
   CompletenessInput input;
   input.model = &model;
   input.num_points = CloudReader(options.cloud_path).NumPoints();
@@ -206,14 +222,16 @@ CompletenessResult Assess(const CompletenessReporterOptions& options, const Spar
   }
   report->points = static_cast<int64_t>(input.num_points);
   AssessmentProgress progress(model.images.size(), input.num_points);
-  input.for_each_point = [&](const auto& take) { ReadPoints(options.cloud_path, &progress, take); };
+  input.for_each_point = [&](const auto& take) {
+    ReadPoints(options.cloud_path, &progress, take, seen);
+  };
   input.asked = ReadArea(options, units.value_or(ModelUnits()));
   input.frame_of = [&](const auto& sample) { return FindPlan(options, model, units, sample); };
   input.lost = LostPictures(options, model);
   FormerReport former = ReadFormerReport(fs::path(options.output_path) / "completeness.json");
   input.former = std::move(former.gaps);
   input.last_id = former.last_id;
-  input.facts = MeasurePictures(options, model, &progress, report);
+  input.facts = MeasurePictures(options, model, &progress, seen, report);
   CompletenessResult result =
       AssessCompleteness(input, options.completeness, options.run.num_threads);
   progress.Finish();
@@ -235,14 +253,22 @@ std::string MapName(const LayerKey& layer) {
   return name;
 }
 
-// Where the model is georeferenced; else that of an earlier run goes.
-void WriteKml(const CompletenessResult& result, const GapPlaces& places, OutputFolder* folder) {
-  if (!places.IsGeographic()) {
-    if (folder->IsOurs("gaps.kml")) folder->Remove("gaps.kml");
-    return;
-  }
-  folder->Claim({"gaps.kml"});
-  WriteTextFile(folder->Path() / "gaps.kml", GapsKml(result, places));
+// Where the model is georeferenced; else those of an earlier run go, as does a route without gaps.
+void WriteGeographic(const CompletenessResult& result, const GapPlaces& places,
+                     OutputFolder* folder) {
+  const auto write = [&](const std::string& name, bool is_wanted, const auto& text) {
+    if (is_wanted) {
+      folder->Claim({name});
+      WriteTextFile(folder->Path() / name, text(result, places));
+    } else if (folder->IsOurs(name)) {
+      folder->Remove(name);
+    }
+  };
+  const bool has_route = places.IsGeographic() && !result.route.empty();
+  write("gaps.kml", places.IsGeographic(), GapsKml);
+  write("route.plan", has_route, RoutePlan);
+  write("route.waypoints", has_route, RouteWaypoints);
+  write("route.cmp", has_route, RouteCockpitMission);
 }
 
 // Of layers that an earlier run has found gaps in.
@@ -268,8 +294,9 @@ void WriteMaps(const CompletenessResult& result, const std::string& unit, Output
 void CompletenessReporterOptions::Bind(OptionTable* table) {
   table->AddRequired("input_path", &input_path, "COLMAP model, binary or text");
   table->AddRequired("cloud_path", &cloud_path, "cloud in the model's frame, PLY");
-  table->AddRequired("output_path", &output_path,
-                     "folder for completeness.json, gaps.geojson, gaps.csv, maps and run.json");
+  table->AddRequired(
+      "output_path", &output_path,
+      "folder for index.html, completeness.json, gaps.geojson, gaps.csv, maps and run.json");
   table->Add("image_path", &image_path,
              "folder of the pictures, also of those that are in no model; empty = nothing is known "
              "of texture, blur and lost pictures",
@@ -281,6 +308,10 @@ void CompletenessReporterOptions::Bind(OptionTable* table) {
              "GeoJSON with the polygons that were to be covered, in WGS84 where the model is "
              "georeferenced, else in its x and y; empty = all that pictures outline",
              "ours");
+  table->Add(
+      "map_path", &map_path,
+      "folder that orthomosaic wrote, for the page's map; empty = the page has none under it",
+      "ours");
   completeness.Bind(table);
   run.Bind(table);
   table->MarkOutput("output_path");
@@ -291,23 +322,29 @@ CompletenessReport ReportCompleteness(const CompletenessReporterOptions& options
   CompletenessReport done;
   RunReport& report = done.run = StartReport("completeness_reporter", options, options.run);
   OutputFolder folder(options.output_path, "--output_path");
-  folder.Claim({"completeness.json", "gaps.geojson", "gaps.csv", "map.png", "run.json"});
+  folder.Claim(
+      {"index.html", "completeness.json", "gaps.geojson", "gaps.csv", "map.png", "run.json"});
   {
     const StageTimer timer(&report, "completeness_reporter");
     const std::optional<ModelUnits> units = ReadModelUnits(options.input_path);
     report.units = UnitsWord(units);
     const SparseModel model = ReadModel(options);
     report.images_in = static_cast<int64_t>(model.images.size());
-    const CompletenessResult result = Assess(options, model, units, &report);
+    Seen seen;
+    const CompletenessResult result = Assess(options, model, units, &seen, &report);
     report.images_used = report.images_in - static_cast<int64_t>(report.left_out.size());
     const GapPlaces places(units.value_or(ModelUnits()), result.ground.frame);
     const fs::path& output = folder.Path();
     WriteTextFile(output / "gaps.geojson", GapsGeoJson(result, model, places));
     WriteTextFile(output / "gaps.csv", GapsCsv(result, model, places));
-    WriteKml(result, places, &folder);
+    WriteGeographic(result, places, &folder);
     WriteMaps(result, places.Unit(), &folder);
     WriteTextFile(output / "completeness.json", CompletenessJson(result, model, places));
     done.answer = CompletenessLine(result, model, places);
+    WriteTextFile(output / "index.html",
+                  CompletenessPage({model, result, places, done.answer, options.image_path,
+                                    options.cloud_path, options.map_path, std::move(seen.points),
+                                    std::move(seen.brightness), options.run.num_threads}));
   }
   WriteRunReport(folder.Path() / "run.json", report);
   return done;

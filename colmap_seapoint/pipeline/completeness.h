@@ -17,6 +17,7 @@ struct CompletenessReporterOptions {
   std::string cloud_path;   // PLY in the model's frame
   std::string output_path;  // folder
   std::string mask_path;    // folder of COLMAP's masks; empty = none
+  std::string map_path;     // folder that orthomosaic wrote, for the page; empty = none
   std::string area;         // GeoJSON of what was asked for; empty = the outline of what was imaged
   CompletenessOptions completeness;
   RunOptions run;
@@ -29,9 +30,10 @@ struct CompletenessReport {
   std::string answer;  // one line
 };
 
-// Writes completeness.json, gaps.geojson, gaps.csv, gaps.kml (georeferenced), map.png
-// (map_<layer>.png of other layers with gaps) and run.json. Pictures of the model that cannot be
-// read are left out. Throws Error when cloud, model, pictures and area do not belong together.
+// Writes index.html, completeness.json, gaps.geojson, gaps.csv, map.png (map_<layer>.png of other
+// layers with gaps), run.json, and where georeferenced gaps.kml and the route for vehicles
+// (route.plan, route.waypoints, route.cmp). Pictures of the model that cannot be read are left out.
+// Throws Error when cloud, model, pictures and area do not belong together.
 CompletenessReport ReportCompleteness(const CompletenessReporterOptions& options);
 
 // The same; the answer on stdout.

@@ -6,7 +6,9 @@
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/io/files/run_report_json.h"
 #include "colmap_seapoint/io/image/picture_masks.h"
+#include "colmap_seapoint/orthomosaic/orthomosaic.h"
 #include "colmap_seapoint/pipeline/completeness.h"
+#include "colmap_seapoint/pipeline/page/completeness_page.h"
 #include "densify/completeness/assess_completeness.h"
 
 namespace colmap_seapoint {
@@ -36,6 +38,7 @@ CompletenessReporterOptions ReporterOptions(const AutomaticReconstructorOptions&
   reporter.cloud_path = model.cloud_path.string();
   reporter.output_path = (workspace.report / "completeness" / model.name).string();
   reporter.mask_path = options.reader.mask_path;
+  reporter.map_path = model.map_path.string();
   reporter.completeness = options.completeness;
   if (reporter.completeness.step == 0) reporter.completeness.step = options.densification.step;
   reporter.run = options.run;
@@ -44,11 +47,12 @@ CompletenessReporterOptions ReporterOptions(const AutomaticReconstructorOptions&
 
 // The cloud tells of most; the pictures also of those that are in no model.
 std::string InputsOf(const CompletenessReporterOptions& reporter, const ModelSummary& model,
-                     const std::string& mapper_fingerprint, const RunReport& report) {
+                     const std::string& mapper_fingerprint, const std::string& map,
+                     const RunReport& report) {
   std::string text = mapper_fingerprint + model.name + "," + model.scaling_fingerprint +
                      model.cloud_hash +
                      PictureMasks(reporter.mask_path).Fingerprint(model.pictures) +
-                     OptionsFingerprint(OptionValues(reporter.completeness));
+                     OptionsFingerprint(OptionValues(reporter.completeness)) + kPageVersion + map;
   for (const RunReport::Input& input : report.inputs) text += "\n" + input.name + " " + input.hash;
   return text;
 }
@@ -82,12 +86,15 @@ void ReportCompletenessOfModels(const AutomaticReconstructorOptions& options,
   const fs::path folder = workspace.report / "completeness";
   RemoveStaleStages(kPrefix, options.report_completeness ? models->size() : 0, folder, state);
   if (!options.report_completeness) return;
+  // Of the page's map: what it is made of beyond what is named anyway.
+  const std::string map = kOrthomosaicVersion + OptionsFingerprint(OptionValues(options.map));
   for (ModelSummary& model : *models) {
     if (model.densification.points == 0) continue;
     const CompletenessReporterOptions reporter = ReporterOptions(options, workspace, model);
-    const Stage stage = {kPrefix + model.name, kCompletenessVersion,
-                         InputsOf(reporter, model, mapper_fingerprint, *report),
-                         "The report in " + reporter.output_path + " is there already"};
+    const Stage stage = {
+        kPrefix + model.name, kCompletenessVersion,
+        InputsOf(reporter, model, mapper_fingerprint, model.map_path.empty() ? "" : map, *report),
+        "The report in " + reporter.output_path + " is there already"};
     model.completeness = AnswerOf(reporter, stage, model.name, state, report);
   }
 }

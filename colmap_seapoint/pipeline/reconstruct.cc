@@ -32,6 +32,7 @@
 #include "colmap_seapoint/pipeline/map.h"
 #include "colmap_seapoint/pipeline/match.h"
 #include "colmap_seapoint/pipeline/orthomosaic_models.h"
+#include "colmap_seapoint/pipeline/page/job_page.h"
 #include "colmap_seapoint/pipeline/scale_models.h"
 #include "colmap_seapoint/report/reconstruction_summary.h"
 #include "colmap_seapoint/workspace/workspace_database.h"
@@ -360,6 +361,7 @@ CommandResult WriteReport(const Workspace& workspace, const std::vector<ModelSum
   const std::string summary = SummaryText(models, report);
   WriteTextFile(workspace.report / "summary.txt", summary);
   WriteRunReport(workspace.report / "run.json", report);
+  WriteJobPage(workspace, models, report);
   return {report.left_out.empty(), summary + "report: " + workspace.report.string() + "\n"};
 }
 

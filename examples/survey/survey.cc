@@ -128,11 +128,15 @@ void AddExactPoints(const SurveyOptions& options, SurveyTruth* truth) {
 
 }  // namespace
 
-SurveyTruth MakeSurveyTruth(const SurveyOptions& options) {
+SurveyTruth MakeSurveyTruth(const SurveyOptions& options, std::vector<PosedImage> more) {
   const std::string problem = CheckSurveyOptions(options);
   if (!problem.empty()) throw UsageError(problem);
   SurveyTruth truth;
   truth.model = PlanSurvey(options);
+  for (PosedImage& image : more) {
+    image.image_id = static_cast<uint32_t>(truth.model.images.size() + 1);
+    truth.model.images.push_back(std::move(image));
+  }
   truth.max_range = MaxRange(options);
   truth.port = options.port;
   truth.surface = MakeSurface(options, truth.model, &truth.boards);

@@ -23,8 +23,9 @@ struct SurveyTruth {
   double max_range = std::numeric_limits<double>::infinity();  // metres; farther counts as unseen
 };
 
-// Cameras, surface and points; no picture yet. Throws UsageError for illegal options.
-SurveyTruth MakeSurveyTruth(const SurveyOptions& options);
+// Cameras, surface and points; no picture yet. `more`: pictures of a second dive over the same
+// ground, which follow those of the survey. Throws UsageError for illegal options.
+SurveyTruth MakeSurveyTruth(const SurveyOptions& options, std::vector<PosedImage> more = {});
 
 // Calls `take` with every picture, in order. The same bytes for any number of threads.
 void RenderSurvey(const SurveyOptions& options, const SurveyTruth& truth,

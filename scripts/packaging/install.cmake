@@ -14,6 +14,8 @@ install(FILES ${PROJECT_SOURCE_DIR}/colmap_seapoint/README.md
   DESTINATION ${package_doc_dir}/colmap_seapoint COMPONENT program)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE
   DESTINATION ${package_doc_dir} RENAME copyright COMPONENT program)
+install(FILES ${PROJECT_SOURCE_DIR}/colmap_seapoint/page/web/three/LICENSE
+  DESTINATION ${package_doc_dir} RENAME copyright.three.js COMPONENT program)
 
 # The program itself writes them, from its option tables. Not where it cannot, or need not, run.
 if(NOT CMAKE_CROSSCOMPILING AND NOT SEAPOINT_SANITIZE)
@@ -49,8 +51,8 @@ set(exported_targets
   seapoint_map_ground seapoint_map_relief seapoint_map_sources seapoint_orthomosaic
   seapoint_tracks seapoint_adjustment seapoint_lens seapoint_reposing seapoint_remeasuring
   seapoint_mapping seapoint_cameras seapoint_pictures seapoint_frames seapoint_joining seapoint_pairing
-  seapoint_workspace seapoint_gaps seapoint_intake seapoint_report
-  seapoint_pipeline_orthomosaic seapoint_pipeline)
+  seapoint_workspace seapoint_gaps seapoint_page seapoint_intake seapoint_report
+  seapoint_pipeline_orthomosaic seapoint_pipeline_page seapoint_pipeline)
 foreach(target IN LISTS exported_targets)
   string(REPLACE seapoint_ "" name ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "colmap_seapoint/io/cloud/ply.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/files/model_units.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "tests/cli/cli_runner.h"
 
@@ -79,6 +81,11 @@ class CompletenessReporter : public testing::Test {
     return Json::parse(in);
   }
 
+  static std::string TextOf(const fs::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
   TemporaryFolder folder_;
 };
 
@@ -96,12 +103,19 @@ TEST_F(CompletenessReporter, TheHoleIsFound) {
   }
   EXPECT_TRUE(is_found);
   EXPECT_EQ(answer.at("unit"), "units");
-  for (const char* name : {"gaps.geojson", "gaps.csv", "map.png", "run.json"}) {
+  for (const char* name : {"index.html", "gaps.geojson", "gaps.csv", "map.png", "run.json"}) {
     EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
   }
-  // Again into the same folder: the ids stay.
-  ASSERT_EQ(Report({"--image_path", (folder_ / "images").string()}).exit_code, 0);
+  const std::string page = TextOf(folder_ / "out" / "index.html");
+  EXPECT_NE(page.find("dive_0.png"), std::string::npos);
+  // The answer can be read without scripts.
+  EXPECT_NE(page.find("<p class=\"answer\">" + result.out.substr(0, 6)), std::string::npos);
+  EXPECT_FALSE(fs::exists(folder_ / "out" / "route.plan"));  // nowhere on the Earth
+  // Again into the same folder: the ids stay, and the page is the same whatever the threads.
+  ASSERT_EQ(Report({"--image_path", (folder_ / "images").string(), "--num_threads", "1"}).exit_code,
+            0);
   EXPECT_EQ(Answer().at("gaps"), answer.at("gaps"));
+  EXPECT_EQ(TextOf(folder_ / "out" / "index.html"), page);
 }
 
 TEST_F(CompletenessReporter, MapsOfLayersThatHaveNoGapsAnyMoreGo) {
@@ -144,6 +158,32 @@ TEST_F(CompletenessReporter, AnAreaNeedsALevelModel) {
   const CliResult result = Report({"--area", area.string()});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.err.find("does not point up"), std::string::npos) << result.err;
+}
+
+TEST_F(CompletenessReporter, TheRouteForVehiclesComesAndGoes) {
+  ModelUnits units;
+  units.is_metric = true;
+  units.frame = "east-north-up";
+  units.origin = GeoPosition{43.1, 5.9, 0};
+  WriteModelUnits(folder_ / "sparse", units);
+  ASSERT_EQ(Report().exit_code, 0);
+  for (const char* name : {"route.plan", "route.waypoints", "route.cmp", "gaps.kml"}) {
+    EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
+  }
+  fs::remove(folder_ / "sparse" / kUnitsFile);
+  ASSERT_EQ(Report().exit_code, 0);
+  for (const char* name : {"route.plan", "route.waypoints", "route.cmp", "gaps.kml"}) {
+    EXPECT_FALSE(fs::exists(folder_ / "out" / name)) << name;
+  }
+}
+
+TEST_F(CompletenessReporter, AMapOfAnotherProgramIsRefused) {
+  fs::create_directories(folder_ / "map");
+  WriteTextFile(folder_ / "map" / "map.json", "{}");
+  WriteImage(folder_ / "map" / "orthomosaic.jpg", ColorImage(4, 4, 3, 9));
+  const CliResult result = Report({"--map_path", (folder_ / "map").string()});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("is no map of ours"), std::string::npos) << result.err;
 }
 
 TEST_F(CompletenessReporter, WithoutPictures) {

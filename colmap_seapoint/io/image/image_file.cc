@@ -118,6 +118,19 @@ Image<uint8_t> Convert(const Image<uint8_t>& image, int num_channels, int code) 
   return converted;
 }
 
+// Throws cv::Exception for an extension without an encoder.
+std::vector<uint8_t> Encode(const Image<uint8_t>& image, const std::string& extension,
+                            const std::vector<int>& settings) {
+  SEAPOINT_CHECK(!image.Empty());
+  const Image<uint8_t> swapped = image.channels == 3   ? Convert(image, 3, cv::COLOR_RGB2BGR)
+                                 : image.channels == 4 ? Convert(image, 4, cv::COLOR_RGBA2BGRA)
+                                                       : image;
+  std::vector<uint8_t> bytes;
+  const bool is_encoded = cv::imencode(extension, AsMat(swapped), bytes, settings);
+  SEAPOINT_CHECK(is_encoded);
+  return bytes;
+}
+
 }  // namespace
 
 ImageSource OpenImageFile(const std::filesystem::path& path) {
@@ -315,18 +328,20 @@ ColorImage ReadColorImage(const std::filesystem::path& path) {
   return PictureFile(path).DecodeColor();
 }
 
+std::vector<uint8_t> EncodePng(const Image<uint8_t>& image) {
+  return Encode(image, ".png", {cv::IMWRITE_PNG_COMPRESSION, 9});
+}
+
+std::vector<uint8_t> EncodeJpeg(const Image<uint8_t>& image, int quality) {
+  return Encode(image, ".jpg", {cv::IMWRITE_JPEG_QUALITY, quality});
+}
+
 void WriteImage(const std::filesystem::path& path, const Image<uint8_t>& image) {
-  SEAPOINT_CHECK(!image.Empty() && (image.channels == 1 || image.channels == 3));
+  SEAPOINT_CHECK(image.channels == 1 || image.channels == 3);
   std::vector<uint8_t> bytes;
-  bool is_encoded = false;
   try {
-    const Image<uint8_t> swapped =
-        image.channels == 3 ? Convert(image, 3, cv::COLOR_RGB2BGR) : image;
-    is_encoded = cv::imencode(LowerExtension(path), AsMat(swapped), bytes);
+    bytes = Encode(image, LowerExtension(path), {});
   } catch (const cv::Exception&) {
-    is_encoded = false;
-  }
-  if (!is_encoded) {
     throw Error(path.string(), "a picture cannot be written in the format of this extension",
                 "use png, jpg or tif");
   }

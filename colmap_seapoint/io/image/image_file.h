@@ -85,6 +85,10 @@ GrayImage ReadGrayImage(const std::filesystem::path& path);
 Picture ReadPicture(const std::filesystem::path& path);
 ColorImage ReadColorImage(const std::filesystem::path& path);
 
+// The bytes of a file of that kind. 8-bit, 1, 3 or (PNG) 4 channels, red green blue alpha.
+std::vector<uint8_t> EncodePng(const Image<uint8_t>& image);
+std::vector<uint8_t> EncodeJpeg(const Image<uint8_t>& image, int quality);  // 0..100
+
 // 8-bit, 1 or 3 channels, format from the extension; atomic.
 void WriteImage(const std::filesystem::path& path, const Image<uint8_t>& image);
 
