@@ -53,6 +53,14 @@ said '^tw ö: FAILED: .*min_confidence'
 rm "$mission/tw ö/project.ini"
 run 0 "$mission"
 
+# With time enough a new dive ends as without a deadline, by way of a coarse answer.
+cp -r "$mission/one" "$mission/three"
+run 0 "$mission" --hours 1
+grep -q 'three: coarse done' "$mission/results/log.txt" || fail "no coarse answer came first"
+! grep -q 'one: coarse' "$mission/results/log.txt" || fail "what is done got a coarse answer"
+said '^three: 4 of 4 pictures used'
+[ ! -e "$mission/results/three/coarse" ] || fail "the coarse answer was not cleared away"
+
 # Without anything, and without anything good.
 mkdir "$folder/nothing"
 run 1 "$folder/nothing"
@@ -60,6 +68,8 @@ said 'holds no dive'
 mkdir "$folder/nothing/empty"
 run 1 "$folder/nothing"
 run 2 "$mission" --jobs none
+run 2 "$mission" --hours soon
+run 2 "$mission" --deadline 25:00
 run 1 "$folder/elsewhere"
 said 'no such folder'
 echo "run_mission: all as promised"
