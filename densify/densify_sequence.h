@@ -3,6 +3,7 @@
 
 #include "colmap_seapoint/base/sparse_model.h"
 #include "colmap_seapoint/base/stereo_rig.h"
+#include "densify/overlap/earlier_surface.h"
 #include "densify/partial_densification_options.h"
 #include "densify/sequence/picture_source.h"
 #include "densify/sequence_report.h"
@@ -22,8 +23,16 @@ inline constexpr char kDensificationVersion[] = "9";
 // `source` and the callbacks throw, but for Error from ReadPicture and ReadSeaPoints. The same
 // clouds and rows, but for their seconds, for any num_threads, with or without `debug`. Memory does
 // not grow with the number of pictures but for some bytes a cell (packed_footprint.h).
+//
+// Where an earlier run left a surface, the pairs of the pictures that came in since are densified
+// alone, for what that surface lacks. That takes the completion pass, which knows what is covered:
+// see CanBeContinued().
 SequenceReport DensifySequence(const SparseModel& model, PictureSource* source,
                                const PartialDensificationOptions& options, int num_threads,
-                               const SequenceCallbacks& callbacks, const StereoRig& rig = {});
+                               const SequenceCallbacks& callbacks, const StereoRig& rig = {},
+                               const EarlierSurface& earlier = {});
+
+// Whether a cloud that was made with these options can be added to.
+bool CanBeContinued(const PartialDensificationOptions& options);
 
 }  // namespace colmap_seapoint

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "densify/overlap/earlier_surface.h"
 #include "densify/overlap/influence_mask.h"
 #include "densify/overlap/packed_footprint.h"
 #include "densify/partial_densification_options.h"
@@ -28,7 +29,9 @@ struct SequenceContext {
   int num_threads;
   const SequenceCallbacks& callbacks;
   PictureCache* pictures;
+  const EarlierSurface& earlier;
 
+  bool HadItsTurn(int position) const { return track.ImageIdx(position) < earlier.num_pictures; }
   std::shared_ptr<const Features> SeaPoints(int position) const {
     return pictures->GetSeaPoints(track.ImageIdx(position));
   }

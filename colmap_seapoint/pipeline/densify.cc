@@ -10,6 +10,7 @@
 #include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/io/cloud/ply.h"
+#include "colmap_seapoint/io/cloud/seen_cloud.h"
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/files/model_units.h"
@@ -84,9 +85,37 @@ void LogPairSeconds(const SequenceReport& sequence) {
            DurationText(propagation) + " (sums over pairs)");
 }
 
+// The earlier cloud's points into the new one, and what they cover. Those of a pair stand together.
+EarlierSurface TakeOver(const EarlierCloud& earlier, const std::filesystem::path& path,
+                        const SparseModel& model, int step, CloudWriter* cloud) {
+  EarlierSurface surface;
+  surface.num_pictures = earlier.num_pictures;
+  if (earlier.num_pictures == 0) return surface;
+  std::vector<Eigen::Vector3f> points;
+  std::array<uint32_t, 2> pair = {};
+  const auto finish_pair = [&] {
+    if (points.empty()) return;
+    const PosedImage& image = model.images.at(pair[0]);
+    const Camera& camera = model.cameras.at(image.camera_id);
+    surface.footprints.emplace_back(
+        FootprintOf(points, {static_cast<int>(pair[0]), camera, image.cam_from_world},
+                    CellsOf(camera, step), SampleStep(camera, step)));
+    points.clear();
+  };
+  ReadSeenCloud(path, [&](const CloudPoint& point, uint32_t image_idx1, uint32_t image_idx2) {
+    const std::array<uint32_t, 2> of_point = {image_idx1, image_idx2};
+    if (of_point != pair) finish_pair();
+    pair = of_point;
+    points.push_back(point.xyz);
+    cloud->Add(point, pair.data(), 2);
+  });
+  finish_pair();
+  return surface;
+}
+
 SequenceReport Densify(const PartialDensifierOptions& options, const SparseModel& model,
-                       const StereoRig& rig, ModelPictures* pictures, CloudWriter* cloud,
-                       MapWriter* maps) {
+                       const StereoRig& rig, const EarlierSurface& earlier, ModelPictures* pictures,
+                       CloudWriter* cloud, MapWriter* maps) {
   std::unique_ptr<Progress> progress;
   DebugFigures figures(std::filesystem::path(options.output_path) / "debug", model);
   SequenceCallbacks callbacks;
@@ -110,7 +139,7 @@ SequenceReport Densify(const PartialDensifierOptions& options, const SparseModel
   }
   SequenceReport sequence =
       DensifySequence(model, pictures, options.densification,
-                      EffectiveNumThreads(options.run.num_threads), callbacks, rig);
+                      EffectiveNumThreads(options.run.num_threads), callbacks, rig, earlier);
   if (progress) progress->Finish();
   if (sequence.num_triangulated > 0) {
     LogInfo("no point of the model is seen by two pictures: " +
@@ -219,7 +248,8 @@ void PartialDensifierOptions::Bind(OptionTable* table) {
   table->MarkOutput("output_path");
 }
 
-RunReport DensifyModel(const PartialDensifierOptions& options, ColmapDatabase* database) {
+RunReport DensifyModel(const PartialDensifierOptions& options, ColmapDatabase* database,
+                       const EarlierCloud& earlier) {
   Validate(options);
   RunReport report = StartReport("partial_densifier", options, options.run);
   OutputFolder folder(options.output_path, "--output_path");
@@ -243,13 +273,18 @@ RunReport DensifyModel(const PartialDensifierOptions& options, ColmapDatabase* d
     const StereoRig rig = ReadRig(options.rig, options.image_path, options.input_path, model);
     const std::unique_ptr<MapWriter> maps = StartMaps(options, model, &folder);
     CloudWriter cloud(output / "fused.ply");
-    sequence = Densify(options, model, rig, &pictures, &cloud, maps.get());
+    const EarlierSurface surface =
+        TakeOver(earlier, output / "fused.ply", model, options.densification.step, &cloud);
+    const std::string rows =
+        earlier.num_pictures > 0 ? ReadPairRows(output / "pairs.csv") : std::string();
+    sequence = Densify(options, model, rig, surface, &pictures, &cloud, maps.get());
     report.inputs = DescribeModelInputs(pictures, model.images.size(), options.input_path,
                                         options.run.num_threads);
     FillReport(model, sequence, &report);
+    report.pairs += earlier.num_pairs;
     LogPairSeconds(sequence);
     report.points = static_cast<int64_t>(cloud.NumPoints());
-    WritePairsCsv(output / "pairs.csv", model, sequence);
+    WritePairsCsv(output / "pairs.csv", model, sequence, rows);
     if (report.points > 0) cloud.Finish();
     WriteModelUnits(output, units);
     if (maps != nullptr && report.points > 0) {

@@ -1,6 +1,7 @@
 // partial_densifier: model + pictures -> one fused cloud, each pair adding only what is new.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "colmap_seapoint/base/options.h"
@@ -13,6 +14,12 @@ namespace colmap_seapoint {
 
 class ColmapDatabase;
 struct RunReport;
+
+// What an earlier run has made of the model's first pictures, in the folder of the output.
+struct EarlierCloud {
+  int num_pictures = 0;  // 0: nothing
+  int64_t num_pairs = 0;
+};
 
 struct PartialDensifierOptions {
   std::string image_path;     // folder of the pictures
@@ -36,8 +43,10 @@ struct PartialDensifierOptions {
 // these files is there and not ours (before anything is read), and when no picture of the model is
 // readable. When no pair gave a point,
 // the report says 0 points, no cloud is written, and pairs.csv says why. `database` is the one at
-// options.database_path, open; nullptr when there is none.
-RunReport DensifyModel(const PartialDensifierOptions& options, ColmapDatabase* database);
+// options.database_path, open; nullptr when there is none. The points and rows of an earlier cloud
+// come first, as they are; the pictures that came in since add theirs (densify_sequence.h).
+RunReport DensifyModel(const PartialDensifierOptions& options, ColmapDatabase* database,
+                       const EarlierCloud& earlier = {});
 
 // As DensifyModel; or, when input_path is no model but holds several (what COLMAP's mapper leaves
 // in sparse/), each of them into the folder of its name below output_path.
