@@ -3,7 +3,6 @@
 
 #include "colmap_seapoint/base/sparse_model.h"
 #include "colmap_seapoint/base/stereo_rig.h"
-#include "densify/overlap/earlier_surface.h"
 #include "densify/partial_densification_options.h"
 #include "densify/sequence/picture_source.h"
 #include "densify/sequence_report.h"
@@ -25,14 +24,16 @@ inline constexpr char kDensificationVersion[] = "9";
 // not grow with the number of pictures but for some bytes a cell (packed_footprint.h).
 //
 // Where an earlier run left a surface, the pairs of the pictures that came in since are densified
-// alone, for what that surface lacks. That takes the completion pass, which knows what is covered:
-// see CanBeContinued().
+// alone, for what that surface lacks. Of a block, those that its pictures begin: blocks know
+// nothing of each other, and their clouds overlap by what pictures on both sides of a border show
+// (colmap_seapoint/merging). Both take the completion pass, which knows what is covered: see
+// CanBeDensifiedInParts().
 SequenceReport DensifySequence(const SparseModel& model, PictureSource* source,
                                const PartialDensificationOptions& options, int num_threads,
                                const SequenceCallbacks& callbacks, const StereoRig& rig = {},
-                               const EarlierSurface& earlier = {});
+                               const SequenceScope& scope = {});
 
-// Whether a cloud that was made with these options can be added to.
-bool CanBeContinued(const PartialDensificationOptions& options);
+// Whether a cloud of these options can be added to, or made block by block.
+bool CanBeDensifiedInParts(const PartialDensificationOptions& options);
 
 }  // namespace colmap_seapoint

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <set>
+#include <tuple>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/parallel.h"
@@ -31,12 +33,34 @@
 namespace colmap_seapoint {
 namespace {
 
+// Of "2/4"; nullopt for what is no such part.
+std::optional<std::pair<int, int>> ParseBlock(const std::string& text) {
+  int block = 0, num_blocks = 0, end = 0;
+  if (std::sscanf(text.c_str(), "%6d/%6d%n", &block, &num_blocks, &end) != 2) return std::nullopt;
+  if (static_cast<size_t>(end) != text.size()) return std::nullopt;
+  if (block < 1 || block > num_blocks) return std::nullopt;
+  return std::pair(block, num_blocks);
+}
+
+void CheckBlock(const PartialDensifierOptions& options) {
+  if (options.block.empty()) return;
+  if (!ParseBlock(options.block)) {
+    throw UsageError("--block " + options.block + ": must be k/N, the k-th of N parts, as 2/4");
+  }
+  if (CanBeDensifiedInParts(options.densification)) return;
+  throw UsageError(
+      "--block: takes --PartialDensification.mode partial, redundancy all, completion 1, and "
+      "neither "
+      "write_maps nor write_debug");
+}
+
 void Validate(const PartialDensifierOptions& options) {
   CheckOutputPaths(options);
   for (const std::string& problem :
        {options.densification.Check(), options.extraction.Check(), CheckRig(options.rig)}) {
     if (!problem.empty()) throw UsageError(problem);
   }
+  CheckBlock(options);
   if (!std::filesystem::is_directory(options.image_path)) {
     throw Error(options.image_path, "there is no such folder", "check --image_path");
   }
@@ -113,8 +137,19 @@ EarlierSurface TakeOver(const EarlierCloud& earlier, const std::filesystem::path
   return surface;
 }
 
+SequenceScope ScopeOf(const PartialDensifierOptions& options, const EarlierCloud& earlier,
+                      const SparseModel& model, CloudWriter* cloud) {
+  SequenceScope scope;
+  scope.earlier = TakeOver(earlier, std::filesystem::path(options.output_path) / "fused.ply", model,
+                           options.densification.step, cloud);
+  if (const auto block = ParseBlock(options.block)) {
+    std::tie(scope.block, scope.num_blocks) = *block;
+  }
+  return scope;
+}
+
 SequenceReport Densify(const PartialDensifierOptions& options, const SparseModel& model,
-                       const StereoRig& rig, const EarlierSurface& earlier, ModelPictures* pictures,
+                       const StereoRig& rig, const SequenceScope& scope, ModelPictures* pictures,
                        CloudWriter* cloud, MapWriter* maps) {
   std::unique_ptr<Progress> progress;
   DebugFigures figures(std::filesystem::path(options.output_path) / "debug", model);
@@ -139,7 +174,7 @@ SequenceReport Densify(const PartialDensifierOptions& options, const SparseModel
   }
   SequenceReport sequence =
       DensifySequence(model, pictures, options.densification,
-                      EffectiveNumThreads(options.run.num_threads), callbacks, rig, earlier);
+                      EffectiveNumThreads(options.run.num_threads), callbacks, rig, scope);
   if (progress) progress->Finish();
   if (sequence.num_triangulated > 0) {
     LogInfo("no point of the model is seen by two pictures: " +
@@ -241,6 +276,10 @@ void PartialDensifierOptions::Bind(OptionTable* table) {
              "folder of masks <image name>.png, no point where a mask is 0; empty = none",
              "COLMAP (there StereoFusion.mask_path)");
   table->Add("rig", &rig, kRigHelp, "paper 4");
+  table->Add("block", &block,
+             "k/N: only the pairs that begin in the k-th of N parts of the track, each part on a "
+             "machine of its own; cloud_merger joins the clouds; empty = all",
+             "ours");
   densification.Bind(table);
   extraction.Bind(table);
   matching.Bind(table);
@@ -273,11 +312,10 @@ RunReport DensifyModel(const PartialDensifierOptions& options, ColmapDatabase* d
     const StereoRig rig = ReadRig(options.rig, options.image_path, options.input_path, model);
     const std::unique_ptr<MapWriter> maps = StartMaps(options, model, &folder);
     CloudWriter cloud(output / "fused.ply");
-    const EarlierSurface surface =
-        TakeOver(earlier, output / "fused.ply", model, options.densification.step, &cloud);
+    const SequenceScope scope = ScopeOf(options, earlier, model, &cloud);
     const std::string rows =
         earlier.num_pictures > 0 ? ReadPairRows(output / "pairs.csv") : std::string();
-    sequence = Densify(options, model, rig, surface, &pictures, &cloud, maps.get());
+    sequence = Densify(options, model, rig, scope, &pictures, &cloud, maps.get());
     report.inputs = DescribeModelInputs(pictures, model.images.size(), options.input_path,
                                         options.run.num_threads);
     FillReport(model, sequence, &report);

@@ -28,6 +28,7 @@ struct PartialDensifierOptions {
   std::string database_path;  // with SeaPoints and matches; empty = they are found again
   std::string mask_path;      // folder of COLMAP's masks (picture_masks.h); empty = none
   std::string rig;            // "", "none" or "LEFT,RIGHT" (read_rig.h)
+  std::string block;          // "k/N": the pairs of the k-th of N parts of the track; empty = all
   PartialDensificationOptions densification;
   SeaPointExtractionOptions extraction;
   SeaPointMatchingOptions matching;

@@ -71,7 +71,7 @@ Stage CloudStage(const PartialDensifierOptions& options, const std::string& name
 // What is there already of the model's first pictures, where these stand as they stood.
 EarlierCloud CloudToContinue(const PartialDensifierOptions& options, const Stage& stage,
                              const std::vector<std::string>& pictures, WorkspaceState* state) {
-  if (!options.rig.empty() || !CanBeContinued(options.densification)) return {};
+  if (!options.rig.empty() || !CanBeDensifiedInParts(options.densification)) return {};
   const auto known = ResultIfDone<ContinuedCloud>(*state, stage);
   if (!known || known->pictures.size() >= pictures.size()) return {};
   if (!std::equal(known->pictures.begin(), known->pictures.end(), pictures.begin())) return {};
