@@ -112,7 +112,7 @@ run_engine() {  # STEP
 }
 
 py dives forget_failed "$mission"
-py dives follow "$mission" 9>&- &
+/usr/bin/python3 "$scripts/dives.py" follow "$mission" 9>&- &
 follower=$!
 before=
 dives=$(py dives list "$mission")
@@ -128,4 +128,5 @@ while [ "$before" != "$dives" ]; do
   dives=$(py dives list "$mission")
 done
 kill "$follower"
+wait "$follower" || true
 py dives summary "$mission"

@@ -61,6 +61,28 @@ grep -q 'three: coarse done' "$mission/results/log.txt" || fail "no coarse answe
 said '^three: 4 of 4 pictures used'
 [ ! -e "$mission/results/three/coarse" ] || fail "the coarse answer was not cleared away"
 
+# The same model in two blocks, once.
+blocks() {  # EXIT_CODE [ARGUMENT...]
+  local expected=$1 status=0
+  shift
+  "$source_dir/scripts/densify_blocks.sh" --blocks 2 --threads 1 --binary "$binary" "$@" \
+    >"$folder/out" 2>&1 || status=$?
+  [ "$status" -eq "$expected" ] || fail "blocks: exit code $status, not $expected"
+}
+workspace=$mission/results/one/workspace
+of_model=(--image_path "$mission/one/images" --input_path "$workspace/sparse/0")
+blocks 0 "$folder/in blocks" "${of_model[@]}" --database_path "$workspace/database.db"
+said "^$folder/in blocks/fused.ply"
+points_of() { head -c 300 "$1" | sed -n 's/^element vertex *\([0-9]*\).*/\1/p'; }
+whole=$(points_of "$workspace/dense/0/fused.ply") joined=$(points_of "$folder/in blocks/fused.ply")
+[ $((joined * 10)) -gt $((whole * 9)) ] && [ $((joined * 10)) -lt $((whole * 11)) ] ||
+  fail "$joined points in blocks, $whole at once"
+made=$(stat -c %y "$folder/in blocks"/*/fused.ply)
+blocks 0 "$folder/in blocks" "${of_model[@]}" --database_path "$workspace/database.db"
+[ "$(stat -c %y "$folder/in blocks"/*/fused.ply)" = "$made" ] || fail "blocks were made again"
+blocks 1 "$folder/no blocks" --image_path "$folder/nowhere" --input_path "$workspace/sparse/0"
+blocks 2 "$folder/no blocks" "${of_model[@]}" --block 1/2
+
 # Without anything, and without anything good.
 mkdir "$folder/nothing"
 run 1 "$folder/nothing"
