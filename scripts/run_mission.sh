@@ -106,6 +106,11 @@ run_engine() {  # STEP
   set +m
   wait "$engine" && return 0
   engine=
+  [ -f "$results/engine.txt" ] || {
+    kill "$follower" 2>/dev/null || true
+    echo "$mission: is no longer there. Put its disk back; the same command then goes on from here." >&2
+    return 1
+  }
   echo "$results/engine.txt: the engine failed; what it says there is the reason:" >&2
   tail -n 5 "$results/engine.txt" >&2
   return 1

@@ -184,7 +184,10 @@ def follow(mission):
     while True:
         time.sleep(5)
         sys.stderr.write(own.read())
-        now = sizes()
+        try:
+            now = sizes()
+        except OSError:
+            continue  # the mission's disk is gone: run_mission.sh says so
         for path, (dive, size) in now.items():
             if size and (dive, size) != before.get(path):
                 for line in last_line(path, size):
