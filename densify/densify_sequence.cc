@@ -211,6 +211,7 @@ void DensifyByCoverage(const SequenceContext& context, const std::function<void(
                        SequenceMemory* memory, SequenceReport* report) {
   std::pair<int, int> last_pair(-1, -1);
   for (int first = 0; first < context.track.Length(); ++first) {
+    if (!context.IsInScope(first)) continue;
     const SequenceView seen = LookAtNext(context, *memory, last_pair, first);
     const bool is_between = first <= last_pair.second && last_pair.second < context.track.Length();
     SecondChoice second{-1, "overlaps too much with the pairs before"};
@@ -297,6 +298,7 @@ void CompleteSequence(const SequenceContext& context, const std::function<void(i
   for (const auto round : {CompletionRound::kBestViews, CompletionRound::kTheRest}) {
     GivenUp given_up;
     for (int position = 0; position < num_pictures; ++position) {
+      if (!context.IsInScope(position)) continue;
       CompletePicture(context, position, round, &given_up, memory, report);
       progress(++done);
     }
@@ -306,9 +308,16 @@ void CompleteSequence(const SequenceContext& context, const std::function<void(i
 
 }  // namespace
 
+bool CanBeDensifiedInParts(const PartialDensificationOptions& options) {
+  return options.completion && options.AgainstWhat() == Redundancy::kAll &&
+         options.Mode() == DensificationMode::kPartial && !options.write_maps &&
+         !options.write_debug;
+}
+
 SequenceReport DensifySequence(const SparseModel& given_model, PictureSource* source,
                                const PartialDensificationOptions& options, int num_threads,
-                               const SequenceCallbacks& callbacks, const StereoRig& rig) {
+                               const SequenceCallbacks& callbacks, const StereoRig& rig,
+                               const SequenceScope& scope) {
   PictureCache pictures(source);
   SequenceReport report;
   std::optional<SparseModel> with_points;
@@ -320,15 +329,16 @@ SequenceReport DensifySequence(const SparseModel& given_model, PictureSource* so
   const SparseModel& model = with_points ? *with_points : given_model;
   const Covisibility covisibility = MeasureCovisibility(model);
   const Track track(model, OrderPictures(model, covisibility), rig);
-  const SequenceContext context{model,       covisibility,   track,
-                                options,     options.Mode(), options.AgainstWhat(),
-                                num_threads, callbacks,      &pictures};
+  const SequenceContext context{
+      model,       covisibility, track,     options, options.Mode(), options.AgainstWhat(),
+      num_threads, callbacks,    &pictures, scope};
   const int64_t num_pictures = track.NumPictures();
   const int64_t total = num_pictures * (Completes(context) ? 3 : 1);
   const auto progress = [&](int64_t done) {
     if (callbacks.progress) callbacks.progress(done, total);
   };
   SequenceMemory memory;
+  memory.footprints = scope.earlier.footprints;
   if (Completes(context)) {
     DensifyByCoverage(context, progress, &memory, &report);
     CompleteSequence(

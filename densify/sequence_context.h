@@ -28,6 +28,15 @@ struct SequenceContext {
   int num_threads;
   const SequenceCallbacks& callbacks;
   PictureCache* pictures;
+  const SequenceScope& scope;
+
+  // Whether the picture begins pairs. A rig's right one goes with its share of the track.
+  bool IsInScope(int position) const {
+    if (track.ImageIdx(position) < scope.earlier.num_pictures) return false;
+    const int64_t length = track.Length(), num_right = track.NumPictures() - length;
+    const int64_t place = position < length ? position : (position - length) * length / num_right;
+    return place * scope.num_blocks / length == scope.block - 1;
+  }
 
   std::shared_ptr<const Features> SeaPoints(int position) const {
     return pictures->GetSeaPoints(track.ImageIdx(position));

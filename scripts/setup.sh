@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # scripts/setup.sh          installs what the build, the tests and the demo need
-# scripts/setup.sh --gate   and the tools of scripts/test.sh: formatter, clang-tidy, ctags, snakemake
+# scripts/setup.sh --gate   and the tools of scripts/test.sh: formatter, clang-tidy, ctags, snakemake, pillow
 #
 # From Debian's packages only. Does nothing when all of it is there. As root, or with sudo.
 set -euo pipefail
@@ -16,7 +16,7 @@ packages=(
 )
 case ${1:-} in
   '') ;;
-  --gate) packages+=(clang-format-14 clang-tidy-14 universal-ctags snakemake) ;;
+  --gate) packages+=(clang-format-14 clang-tidy-14 universal-ctags snakemake python3-pil) ;;
   *) sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//p}' "$0" >&2; exit 2 ;;
 esac
 

@@ -47,10 +47,14 @@ double ResidualSigma(const Bundle& bundle, const BundleValues& values) {
   return errors.empty() ? 0 : UpperMedian(std::move(errors)) / kMedianOfUnit;
 }
 
+int64_t NumFreePictures(const Bundle& bundle) {
+  return std::count(bundle.holds_pose.begin(), bundle.holds_pose.end(), false);
+}
+
 // How much larger errors are than what an adjustment leaves of them, since it fits so many values.
 double ErrorsToResiduals(const Bundle& bundle) {
   double num_free = 3.0 * static_cast<double>(bundle.NumPoints()) +
-                    6.0 * static_cast<double>(bundle.NumPictures()) - 7;
+                    6.0 * static_cast<double>(NumFreePictures(bundle)) - 7;
   for (const BundleLens& lens : bundle.lenses) num_free += lens.num_free;
   const double num_residuals = 2.0 * static_cast<double>(bundle.NumObservations());
   return num_residuals > num_free ? std::sqrt(num_residuals / (num_residuals - num_free)) : 1;
@@ -125,7 +129,7 @@ void UpdatePointErrors(SparseModel* model) {
 std::optional<BundleAdjustment> AdjustBundleInFull(const BundleAdjustmentOptions& options,
                                                    const SparseModel& model) {
   const std::map<uint32_t, LensFreedom> freedom = FreedomOfLenses(options, model);
-  const Bundle bundle = MakeBundle(model, freedom);
+  const Bundle bundle = MakeBundle(model, freedom, options.held_images);
   if (bundle.NumObservations() == 0) return std::nullopt;
   BundleValues values = ReadValues(bundle, freedom, model);
   BundleMinimizer minimizer(bundle, options.num_threads);

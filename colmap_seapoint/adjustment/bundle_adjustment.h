@@ -4,6 +4,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "colmap_seapoint/adjustment/equations/bundle.h"
@@ -20,6 +21,7 @@ struct BundleAdjustmentOptions {
   // What of a camera's lens is held or tied, by camera id; lenses that are not named are free. The
   // two options above apply to all.
   std::map<uint32_t, LensFreedom> lenses;
+  std::set<uint32_t> held_images;  // image_ids: their poses stay as they are
   // The loss of the way to the minimum: convex, so that a bad start finds it.
   RobustLoss loss;
   // With the loss at the minimum. Matches that are wrong by a pixel or three are the more between
@@ -52,10 +54,10 @@ struct BundleAdjustment {
 };
 
 // The model with its poses, points and lenses adjusted, and the points' errors (pixels) set anew.
-// Nothing holds the model's frame: it may move by a trifle. What takes no part (bundle.h) stays
-// where it is. nullopt when no two pictures see a common point. Prints progress when it takes long.
-// The same bytes for any number of threads. About a microsecond an observation and iteration, 20
-// to 100 iterations; 200 bytes an observation beside the two models.
+// Where no pose is held nothing holds the model's frame: it may move by a trifle. What takes no
+// part (bundle.h) stays where it is. nullopt when no two pictures see a common point. Prints
+// progress when it takes long. The same bytes for any number of threads. About a microsecond an
+// observation and iteration, 20 to 100 iterations; 200 bytes an observation beside the two models.
 std::optional<BundleAdjustment> AdjustBundleInFull(const BundleAdjustmentOptions& options,
                                                    const SparseModel& model);
 // The model alone.

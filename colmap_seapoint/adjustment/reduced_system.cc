@@ -84,6 +84,7 @@ class RowSum {
   // Puts the sums where they belong, except for the lenses' own equations, which it returns.
   LensPart Finish() {
     BlockMatrix& matrix = system_->matrix;
+    if (bundle_.holds_pose[picture_]) own_.setIdentity();  // all else of its row is 0
     matrix.blocks[place_of_picture_[picture_]] += own_;
     const auto first = static_cast<Eigen::Index>(kBlockSize * picture_);
     system_->gradient.segment<kBlockSize>(first) = gradient_;

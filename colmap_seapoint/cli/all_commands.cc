@@ -1,4 +1,5 @@
 #include "colmap_seapoint/cli/command.h"
+#include "colmap_seapoint/merging/cloud_merger.h"
 #include "colmap_seapoint/pipeline/cloud_exporter.h"
 #include "colmap_seapoint/pipeline/compare.h"
 #include "colmap_seapoint/pipeline/completeness.h"
@@ -34,6 +35,8 @@ std::vector<Command> AllCommands() {
                   RunPartialDensifier),
       MakeCommand("cloud_comparer", "two clouds in one frame -> accuracy, completeness, density",
                   RunCloudComparer),
+      MakeCommand("cloud_merger", "clouds of the blocks of a survey -> one, without duplicates",
+                  RunCloudMerger),
       MakeCommand("cloud_exporter", "a cloud -> LAS or LAZ, where it lies on the Earth",
                   RunCloudExporter),
       MakeCommand("orthomosaic", "model, pictures and cloud -> relief and orthomosaic, as GeoTIFFs",

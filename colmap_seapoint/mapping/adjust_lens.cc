@@ -10,27 +10,22 @@
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
-#include "colmap_seapoint/io/image/image_file.h"
-#include "colmap_seapoint/io/image/picture_masks.h"
 #include "colmap_seapoint/lens/choose_lens.h"
 #include "colmap_seapoint/lens/ground_bend.h"
 #include "colmap_seapoint/lens/lens_doubt.h"
+#include "colmap_seapoint/mapping/measure_again.h"
 #include "colmap_seapoint/mapping/retriangulate.h"
 #include "colmap_seapoint/mapping/sound_adjustment.h"
 #include "colmap_seapoint/remeasuring/extend_tracks.h"
-#include "colmap_seapoint/remeasuring/remeasure_observations.h"
 #include "colmap_seapoint/reposing/match_agreement.h"
 #include "colmap_seapoint/reposing/repose_pictures.h"
-#include "feature/remeasuring/patch_matching.h"
 
 namespace colmap_seapoint {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kFirmObservations = 100;
 constexpr double kMaxFocalRatioOnceMore = 1.2;
-constexpr size_t kMaxExtendedObservations = 1500;  // of a picture
 
 // What became of the first camera, as one line for the user.
 std::string Outcome(const Camera& was, const Camera& is) {
@@ -42,59 +37,11 @@ std::string Outcome(const Camera& was, const Camera& is) {
   return text;
 }
 
-size_t NumObservations(const PosedImage& image, size_t first_predicted) {
-  const auto begin = image.point3D_ids.begin();
-  return first_predicted -
-         static_cast<size_t>(
-             std::count(begin, begin + static_cast<std::ptrdiff_t>(first_predicted), kNoPoint3D));
-}
-
 // The model as everybody will read it: rotations are made unit ones again by every reading.
 SparseModel WrittenAndRead(const fs::path& folder, SparseModel model) {
   WriteSparseModelBinary(folder, model);
   model = SparseModel();
   return ReadSparseModel(folder);
-}
-
-// Whether each picture keeps half of its observations, predicted ones aside, or as many as hold it
-// firmly.
-bool HoldsFirmly(const SparseModel& before, const SparseModel& after,
-                 const std::map<uint32_t, size_t>& first_predicted) {
-  for (size_t i = 0; i < before.images.size(); ++i) {
-    const size_t num_left =
-        NumObservations(after.images[i], first_predicted.at(before.images[i].image_id));
-    if (num_left < kFirmObservations &&
-        2 * num_left <
-            NumObservations(before.images[i], first_predicted.at(before.images[i].image_id))) {
-      return false;
-    }
-  }
-  return true;
-}
-
-// The model with its observations measured again in the pictures: those that are known best where
-// they are enough, else those that are known at all; nullopt where neither are.
-std::optional<SparseModel> MeasuredAgain(const SparseModel& model,
-                                         const std::map<uint32_t, size_t>& first_predicted,
-                                         const AdjustmentJob& job) {
-  RemeasuringOptions options;
-  options.first_predicted = first_predicted;
-  options.num_threads = job.num_threads;
-  if (!job.mask_path.empty()) {
-    options.read_mask = [&, masks = PictureMasks(job.mask_path)](const PosedImage& image) {
-      const Camera& camera = model.cameras.at(image.camera_id);
-      return masks.ReadForResampling(image.name, camera.width, camera.height);
-    };
-  }
-  const auto read = [&](const PosedImage& image) {
-    return ReadGrayImage(job.image_path / image.name);
-  };
-  for (const double max_sigma : {options.max_sigma, kMaxPatchSigma}) {
-    options.max_sigma = max_sigma;
-    Remeasurement measured = RemeasureObservations(options, model, read);
-    if (HoldsFirmly(model, measured.model, first_predicted)) return std::move(measured.model);
-  }
-  return std::nullopt;
 }
 
 ColmapDatabase OpenedToRead(const fs::path& path) {
@@ -134,24 +81,13 @@ std::string Refusal(const char* what, const std::string& fault) {
   return fault.empty() ? "" : std::string("; ") + what + " kept as the mapper left it: " + fault;
 }
 
-// How many observations a picture shall have when those that the model predicts are added.
-size_t MaxObservations(size_t num_images) {
-  return std::min(kMaxExtendedObservations,
-                  kMaxAdjustedObservations / std::max<size_t>(1, num_images));
-}
-
 // Measures the observations again, and those that matching missed, chooses the form of the lens
 // that they prove, unless it is held, and adjusts once more. Returns what is known of the lens, or
 // why the model stayed as it was.
 std::string MeasureAndAdjust(const AdjustmentJob& job, LensLimits limits, const fs::path& folder,
                              SparseModel* model) {
   const std::map<uint32_t, size_t> num_points2D = NumPoints2D(*model);
-  ExtendTracks({MaxObservations(model->images.size()), job.num_threads}, model);
-  if (auto measured = MeasuredAgain(*model, num_points2D, job)) {
-    *model = *std::move(measured);
-  } else {
-    DropExtensions(num_points2D, model);
-  }
+  ExtendAndMeasure({job.image_path, job.mask_path, job.num_threads}, num_points2D, model);
   limits.max_focal_ratio = kMaxFocalRatioOnceMore;
   limits.rejects_outliers = true;
   LensChoice choice;

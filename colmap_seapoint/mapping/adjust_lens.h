@@ -16,9 +16,6 @@
 
 namespace colmap_seapoint {
 
-// That the last adjustment takes in: its memory grows with them.
-inline constexpr size_t kMaxAdjustedObservations = 1600000;
-
 struct AdjustmentJob {
   std::filesystem::path database_path;
   std::filesystem::path image_path;

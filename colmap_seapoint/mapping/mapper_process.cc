@@ -45,6 +45,9 @@ std::vector<std::string> Arguments(const ColmapProgram& colmap, const MapperCall
                                         call.image_path.string(),
                                         "--output_path",
                                         call.output_path.string()};
+  if (!call.input_path.empty()) {
+    arguments.insert(arguments.end(), {"--input_path", call.input_path.string()});
+  }
   if (!call.pictures.empty()) {
     const fs::path list = call.output_path / "pictures.txt";
     std::string names;

@@ -9,6 +9,7 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/mapping/add_pictures.h"
 #include "colmap_seapoint/mapping/adjust_lens.h"
 #include "colmap_seapoint/mapping/join_rounds.h"
 #include "colmap_seapoint/mapping/mapper_process.h"
@@ -50,6 +51,7 @@ struct Trial {
   MapperOptions options;
   bool holds_distortion = false;
   bool must_succeed = false;
+  fs::path continued_model;
   std::vector<fs::path> models;     // those of enough points
   std::vector<std::string> lenses;  // what became of each model's lens
   bool lenses_are_sound = true;
@@ -155,6 +157,7 @@ class MapperRounds {
 
   // Of a large survey a few pictures may show nothing that ties them: they are the later rounds'.
   bool IsDoubtful(const Trial& trial) const {
+    if (!trial.continued_model.empty() && !trial.models.empty()) return false;
     const size_t num_missing = missing_.size() - std::min(missing_.size(), NumPosedWell(trial));
     return num_missing > missing_.size() / kPicturesPerLost || !trial.lenses_are_sound;
   }
@@ -162,8 +165,11 @@ class MapperRounds {
   Trial RunTrial(const std::string& name, const TrialPlan& plan) {
     Trial trial;
     trial.folder = folder_ / ("trial_" + name);
-    fs::create_directories(trial.folder);
-    MapperCall call = CallOf(job_, plan, trial.folder, name);
+    trial.continued_model = plan.continued_model;
+    // A model that is continued is written to where others get a folder each.
+    const fs::path output = plan.continued_model.empty() ? trial.folder : trial.folder / "0";
+    fs::create_directories(output);
+    MapperCall call = CallOf(job_, plan, output, name);
     if (num_models_ > 0) call.pictures.assign(missing_.begin(), missing_.end());
     call.num_pictures = missing_.size();
     trial.command = call.command;
@@ -192,7 +198,13 @@ class MapperRounds {
   bool AddModel(const fs::path& path, const std::string& trial_name, Trial* trial) const {
     SparseModel model = ReadSparseModel(path);
     std::string lens;
-    if (job_.lens != LensRule::kLeaveToMapper) {
+    if (!trial->continued_model.empty()) {
+      AddedPictures added =
+          AdjustAddedPictures(JobOf(*trial, trial_name), trial->continued_model, path);
+      if (!added.model) return false;
+      lens = added.outcome;
+      model = *std::move(added.model);
+    } else if (job_.lens != LensRule::kLeaveToMapper) {
       const std::string log = "lens_" + trial_name + "_" + path.filename().string();
       LensAdjustment adjustment = AdjustLens(colmap_, JobOf(*trial, log), path);
       if (!adjustment.is_usable) return false;

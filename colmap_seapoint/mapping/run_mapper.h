@@ -34,6 +34,9 @@ struct MapperJob {
   // True: the first round is tried with fewer matches before it is tried with all of them
   // (tracks/thinned_database.h), and of a large survey with the lens of a pilot (lens_pilot.h).
   bool thins_matches = false;
+  // Where given, the pictures that are not in it are added to this model, whose poses and lenses
+  // stay (add_pictures.h), before all else is tried; what it takes is taken.
+  std::optional<std::filesystem::path> continued_model;
   // Where given, the first round is tried with these before it is tried as it is (initial_pair.h).
   std::optional<MapperOptions> initial_pair_round;
   MapperOptions first_round;

@@ -55,6 +55,7 @@ SoundAdjustment AdjustSoundly(const SparseModel& before, const LensLimits& limit
   BundleAdjustmentOptions options;
   options.lenses = limits.holds_lens ? AllLensesHeld(before)
                                      : FreedomOfLenses(limits.form, before, limits.prior_focals);
+  options.held_images = limits.held_images;
   options.num_threads = limits.num_threads;
   if (!limits.rejects_outliers) options.last_loss.reset();
   if (const auto frame = FindGroundFrame(before)) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 
 #include "colmap_seapoint/base/sparse_model.h"
@@ -18,8 +19,9 @@ struct LensLimits {
   // Observations that are far off shall count for nothing in the end; not worth its time before the
   // last adjustment.
   bool rejects_outliers = false;
-  int num_threads = 1;      // -1 = all; never changes a result
-  bool holds_lens = false;  // all of it: poses and points alone are adjusted
+  int num_threads = 1;             // -1 = all; never changes a result
+  bool holds_lens = false;         // all of it: poses and points alone are adjusted
+  std::set<uint32_t> held_images;  // image_ids: their poses stay as they are
 };
 
 // What a model is adjusted with before its lens is chosen: all of it is free but for a second focal

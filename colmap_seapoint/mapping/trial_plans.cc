@@ -10,6 +10,7 @@
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/mapping/adjust_lens.h"
 #include "colmap_seapoint/mapping/lens_pilot.h"
+#include "colmap_seapoint/mapping/measure_again.h"
 #include "colmap_seapoint/tracks/thinned_database.h"
 
 namespace colmap_seapoint {
@@ -22,6 +23,9 @@ constexpr char kNumBeginnings[] = "Mapper.init_num_trials";
 constexpr char kRefineDistortion[] = "Mapper.ba_refine_extra_params";
 constexpr char kGlobalRefineDistortion[] = "GlobalMapper.ba_refine_extra_params";
 constexpr char kRefineFocal[] = "Mapper.ba_refine_focal_length";
+constexpr char kFixExisting[] = "Mapper.fix_existing_images";
+constexpr char kMaxRefinements[] = "Mapper.ba_global_max_refinements";
+constexpr char kMaxIterations[] = "Mapper.ba_global_max_num_iterations";
 constexpr char kMinInitialAngle[] = "Mapper.init_min_tri_angle";
 constexpr double kWideFocal = 0.7;  // of the longer side: 71 degrees
 
@@ -153,6 +157,23 @@ TrialPlan WideLensPlan(const ColmapProgram& colmap, const MapperJob& job, const 
   return plan;
 }
 
+// The pictures that came in since, added to the model that there is, which stays as it is.
+std::optional<TrialPlan> ContinuedPlan(const ColmapProgram& colmap, const MapperJob& job) {
+  if (!job.continued_model) return std::nullopt;
+  for (const char* name : {kFixExisting, kRefineFocal, kRefineDistortion}) {
+    if (!colmap.HasMapperOption(name)) return std::nullopt;
+  }
+  TrialPlan plan = PlainPlan(job, "_continued", job.first_round);
+  plan.continued_model = *job.continued_model;
+  plan.options[kFixExisting] = "1";
+  plan.options[kRefineFocal] = plan.options[kRefineDistortion] = "0";
+  // Of all points there are, though few of them are new: ours follows.
+  for (const char* name : {kMaxRefinements, kMaxIterations}) {
+    if (colmap.HasMapperOption(name)) plan.options[name] = name == kMaxIterations ? "5" : "1";
+  }
+  return plan;
+}
+
 }  // namespace
 
 std::vector<TrialPlan> PlanFirstRound(const ColmapProgram& colmap, const MapperJob& job,
@@ -162,6 +183,7 @@ std::vector<TrialPlan> PlanFirstRound(const ColmapProgram& colmap, const MapperJ
     HoldLens(colmap, job.lens, &plan);
     plans.push_back(std::move(plan));
   };
+  if (const auto continued = ContinuedPlan(colmap, job)) plans.push_back(*continued);
   if (job.global_round) add(GlobalPlan(job));
   if (job.thins_matches) add(ThinnedPlan(colmap, job, folder));
   if (job.initial_pair_round) add(PlainPlan(job, "_initial_pair", *job.initial_pair_round));
@@ -191,6 +213,7 @@ MapperCall CallOf(const MapperJob& job, const TrialPlan& plan, const fs::path& o
                   const std::string& log_name) {
   MapperCall call;
   call.command = plan.command;
+  call.input_path = plan.continued_model;
   call.database_path = plan.database_path;
   call.image_path = job.image_path;
   call.output_path = output_path;

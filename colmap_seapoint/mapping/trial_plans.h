@@ -17,6 +17,7 @@ struct TrialPlan {
   std::string name;  // of its folder and log, behind the round's
   std::string command = kMapper;
   std::filesystem::path database_path;
+  std::filesystem::path continued_model;     // whose pictures and lenses stay; empty: none
   std::filesystem::path triangulation_path;  // the database whose matches become the points
   MapperOptions options;
   bool holds_distortion = false;  // by the options
@@ -27,10 +28,11 @@ struct TrialPlan {
   std::function<void(TrialPlan*)> prepare;  // before it is run; may be empty
 };
 
-// The global mapper, thinned matches, an initial pair of ours (where the job asks for them), COLMAP
-// as it is, with a wide lens where nothing is known of the lens, with a free distortion, and with
-// small models dropped. `folder`: exists; what thinned
-// matches need is put there when their turn comes. The plans refer to `colmap` and `job`.
+// The model that is to be continued, where the job names one; the global mapper, thinned matches,
+// an initial pair of ours (where the job asks for them), COLMAP as it is, with a wide lens where
+// nothing is known of the lens, with a free distortion, and with small models dropped. `folder`:
+// exists; what thinned matches need is put there when their turn comes. The plans refer to `colmap`
+// and `job`.
 std::vector<TrialPlan> PlanFirstRound(const ColmapProgram& colmap, const MapperJob& job,
                                       const std::filesystem::path& folder);
 

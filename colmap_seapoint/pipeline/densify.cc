@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <set>
+#include <tuple>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/io/cloud/ply.h"
+#include "colmap_seapoint/io/cloud/seen_cloud.h"
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/files/model_units.h"
@@ -30,12 +33,34 @@
 namespace colmap_seapoint {
 namespace {
 
+// Of "2/4"; nullopt for what is no such part.
+std::optional<std::pair<int, int>> ParseBlock(const std::string& text) {
+  int block = 0, num_blocks = 0, end = 0;
+  if (std::sscanf(text.c_str(), "%6d/%6d%n", &block, &num_blocks, &end) != 2) return std::nullopt;
+  if (static_cast<size_t>(end) != text.size()) return std::nullopt;
+  if (block < 1 || block > num_blocks) return std::nullopt;
+  return std::pair(block, num_blocks);
+}
+
+void CheckBlock(const PartialDensifierOptions& options) {
+  if (options.block.empty()) return;
+  if (!ParseBlock(options.block)) {
+    throw UsageError("--block " + options.block + ": must be k/N, the k-th of N parts, as 2/4");
+  }
+  if (CanBeDensifiedInParts(options.densification)) return;
+  throw UsageError(
+      "--block: takes --PartialDensification.mode partial, redundancy all, completion 1, and "
+      "neither "
+      "write_maps nor write_debug");
+}
+
 void Validate(const PartialDensifierOptions& options) {
   CheckOutputPaths(options);
   for (const std::string& problem :
        {options.densification.Check(), options.extraction.Check(), CheckRig(options.rig)}) {
     if (!problem.empty()) throw UsageError(problem);
   }
+  CheckBlock(options);
   if (!std::filesystem::is_directory(options.image_path)) {
     throw Error(options.image_path, "there is no such folder", "check --image_path");
   }
@@ -84,9 +109,48 @@ void LogPairSeconds(const SequenceReport& sequence) {
            DurationText(propagation) + " (sums over pairs)");
 }
 
+// The earlier cloud's points into the new one, and what they cover. Those of a pair stand together.
+EarlierSurface TakeOver(const EarlierCloud& earlier, const std::filesystem::path& path,
+                        const SparseModel& model, int step, CloudWriter* cloud) {
+  EarlierSurface surface;
+  surface.num_pictures = earlier.num_pictures;
+  if (earlier.num_pictures == 0) return surface;
+  std::vector<Eigen::Vector3f> points;
+  std::array<uint32_t, 2> pair = {};
+  const auto finish_pair = [&] {
+    if (points.empty()) return;
+    const PosedImage& image = model.images.at(pair[0]);
+    const Camera& camera = model.cameras.at(image.camera_id);
+    surface.footprints.emplace_back(
+        FootprintOf(points, {static_cast<int>(pair[0]), camera, image.cam_from_world},
+                    CellsOf(camera, step), SampleStep(camera, step)));
+    points.clear();
+  };
+  ReadSeenCloud(path, [&](const CloudPoint& point, uint32_t image_idx1, uint32_t image_idx2) {
+    const std::array<uint32_t, 2> of_point = {image_idx1, image_idx2};
+    if (of_point != pair) finish_pair();
+    pair = of_point;
+    points.push_back(point.xyz);
+    cloud->Add(point, pair.data(), 2);
+  });
+  finish_pair();
+  return surface;
+}
+
+SequenceScope ScopeOf(const PartialDensifierOptions& options, const EarlierCloud& earlier,
+                      const SparseModel& model, CloudWriter* cloud) {
+  SequenceScope scope;
+  scope.earlier = TakeOver(earlier, std::filesystem::path(options.output_path) / "fused.ply", model,
+                           options.densification.step, cloud);
+  if (const auto block = ParseBlock(options.block)) {
+    std::tie(scope.block, scope.num_blocks) = *block;
+  }
+  return scope;
+}
+
 SequenceReport Densify(const PartialDensifierOptions& options, const SparseModel& model,
-                       const StereoRig& rig, ModelPictures* pictures, CloudWriter* cloud,
-                       MapWriter* maps) {
+                       const StereoRig& rig, const SequenceScope& scope, ModelPictures* pictures,
+                       CloudWriter* cloud, MapWriter* maps) {
   std::unique_ptr<Progress> progress;
   DebugFigures figures(std::filesystem::path(options.output_path) / "debug", model);
   SequenceCallbacks callbacks;
@@ -110,7 +174,7 @@ SequenceReport Densify(const PartialDensifierOptions& options, const SparseModel
   }
   SequenceReport sequence =
       DensifySequence(model, pictures, options.densification,
-                      EffectiveNumThreads(options.run.num_threads), callbacks, rig);
+                      EffectiveNumThreads(options.run.num_threads), callbacks, rig, scope);
   if (progress) progress->Finish();
   if (sequence.num_triangulated > 0) {
     LogInfo("no point of the model is seen by two pictures: " +
@@ -212,6 +276,10 @@ void PartialDensifierOptions::Bind(OptionTable* table) {
              "folder of masks <image name>.png, no point where a mask is 0; empty = none",
              "COLMAP (there StereoFusion.mask_path)");
   table->Add("rig", &rig, kRigHelp, "paper 4");
+  table->Add("block", &block,
+             "k/N: only the pairs that begin in the k-th of N parts of the track, each part on a "
+             "machine of its own; cloud_merger joins the clouds; empty = all",
+             "ours");
   densification.Bind(table);
   extraction.Bind(table);
   matching.Bind(table);
@@ -219,7 +287,8 @@ void PartialDensifierOptions::Bind(OptionTable* table) {
   table->MarkOutput("output_path");
 }
 
-RunReport DensifyModel(const PartialDensifierOptions& options, ColmapDatabase* database) {
+RunReport DensifyModel(const PartialDensifierOptions& options, ColmapDatabase* database,
+                       const EarlierCloud& earlier) {
   Validate(options);
   RunReport report = StartReport("partial_densifier", options, options.run);
   OutputFolder folder(options.output_path, "--output_path");
@@ -243,13 +312,17 @@ RunReport DensifyModel(const PartialDensifierOptions& options, ColmapDatabase* d
     const StereoRig rig = ReadRig(options.rig, options.image_path, options.input_path, model);
     const std::unique_ptr<MapWriter> maps = StartMaps(options, model, &folder);
     CloudWriter cloud(output / "fused.ply");
-    sequence = Densify(options, model, rig, &pictures, &cloud, maps.get());
+    const SequenceScope scope = ScopeOf(options, earlier, model, &cloud);
+    const std::string rows =
+        earlier.num_pictures > 0 ? ReadPairRows(output / "pairs.csv") : std::string();
+    sequence = Densify(options, model, rig, scope, &pictures, &cloud, maps.get());
     report.inputs = DescribeModelInputs(pictures, model.images.size(), options.input_path,
                                         options.run.num_threads);
     FillReport(model, sequence, &report);
+    report.pairs += earlier.num_pairs;
     LogPairSeconds(sequence);
     report.points = static_cast<int64_t>(cloud.NumPoints());
-    WritePairsCsv(output / "pairs.csv", model, sequence);
+    WritePairsCsv(output / "pairs.csv", model, sequence, rows);
     if (report.points > 0) cloud.Finish();
     WriteModelUnits(output, units);
     if (maps != nullptr && report.points > 0) {

@@ -1,6 +1,10 @@
 #include "colmap_seapoint/pipeline/densify_models.h"
 
+#include <algorithm>
+
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/content_hash.h"
 #include "colmap_seapoint/io/files/run_report_json.h"
@@ -27,13 +31,70 @@ PartialDensifierOptions DensifierOptions(const AutomaticReconstructorOptions& op
   return densifier;
 }
 
+// The pictures of a model as they were densified: a line each, of name, pose and camera.
+std::vector<std::string> LinesOf(const ModelSummary& summary) {
+  const SparseModel model = ReadSparseModel(summary.path, ModelContent::kPosesAndPoints);
+  std::vector<std::string> lines;
+  for (const PosedImage& image : model.images) {
+    const Camera& camera = model.cameras.at(image.camera_id);
+    ContentHash hash;
+    const int numbers[] = {static_cast<int>(camera.model), camera.width, camera.height};
+    hash.Add(numbers, sizeof(numbers));
+    hash.Add(camera.params.data(), camera.params.size() * sizeof(double));
+    hash.Add(image.cam_from_world.rotation.coeffs().data(), 4 * sizeof(double));
+    hash.Add(image.cam_from_world.translation.data(), 3 * sizeof(double));
+    lines.push_back(image.name + " " + hash.Text());
+  }
+  return lines;
+}
+
+// A cloud and what it was made of, to be added to when pictures come in. Beside the stage's own
+// record, which is forgotten as soon as the cloud has to be another one.
+struct ContinuedCloud {
+  std::vector<std::string> pictures;
+  RunReport report;
+};
+
+void to_json(nlohmann::ordered_json& json, const ContinuedCloud& cloud) {
+  json = {{"pictures", cloud.pictures}, {"report", cloud.report}};
+}
+
+void from_json(const nlohmann::ordered_json& json, ContinuedCloud& cloud) {
+  cloud = {json.at("pictures").get<std::vector<std::string>>(), json.at("report").get<RunReport>()};
+}
+
+Stage CloudStage(const PartialDensifierOptions& options, const std::string& name) {
+  return {"cloud_to_continue_" + name, kDensificationVersion,
+          options.mask_path + OptionsFingerprint(OptionValues(options.densification)), ""};
+}
+
+// What is there already of the model's first pictures, where these stand as they stood.
+EarlierCloud CloudToContinue(const PartialDensifierOptions& options, const Stage& stage,
+                             const std::vector<std::string>& pictures, WorkspaceState* state) {
+  if (!options.rig.empty() || !CanBeDensifiedInParts(options.densification)) return {};
+  const auto known = ResultIfDone<ContinuedCloud>(*state, stage);
+  if (!known || known->pictures.size() >= pictures.size()) return {};
+  if (!std::equal(known->pictures.begin(), known->pictures.end(), pictures.begin())) return {};
+  const size_t num_new = pictures.size() - known->pictures.size();
+  LogInfo("The cloud of " + std::to_string(known->pictures.size()) + " pictures stays as it is; " +
+          std::to_string(num_new) + " add theirs");
+  return {static_cast<int>(known->pictures.size()), known->report.pairs};
+}
+
 // What it left out could be read when SeaPoints were found in it: a disk that fails now and then.
 // The next run tries again.
 RunReport DensifyOnce(const PartialDensifierOptions& densifier, const Stage& stage,
-                      ColmapDatabase* database, WorkspaceState* state) {
+                      const ModelSummary& model, ColmapDatabase* database, WorkspaceState* state) {
   RunReport result = RunStage<RunReport>(state, stage, [&]() -> StageOutput<RunReport> {
-    RunReport report = DensifyModel(densifier, database);
-    return {std::move(report), FilesOfOurs(densifier.output_path)};
+    const Stage cloud = CloudStage(densifier, model.name);
+    const std::vector<std::string> pictures = LinesOf(model);
+    const EarlierCloud earlier = CloudToContinue(densifier, cloud, pictures, state);
+    RunReport report = DensifyModel(densifier, database, earlier);
+    const auto files = FilesOfOurs(densifier.output_path);
+    if (report.left_out.empty()) {
+      FinishStage(cloud, ContinuedCloud{pictures, report}, files, state);
+    }
+    return {std::move(report), files};
   });
   if (!result.left_out.empty()) state->Forget(stage.name);
   return result;
@@ -54,7 +115,7 @@ void DensifyModels(const AutomaticReconstructorOptions& options, const Workspace
                              PictureMasks(densifier.mask_path).Fingerprint(model.pictures) +
                              OptionsFingerprint(OptionValues(options.densification)),
                          "The cloud in " + densifier.output_path + " is there already"};
-    model.densification = DensifyOnce(densifier, stage, database, state);
+    model.densification = DensifyOnce(densifier, stage, model, database, state);
     for (RunReport::Stage& part : model.densification.stages) part.name += " " + model.name;
     model.cloud_path = workspace.dense / model.name / "fused.ply";
     AddPart(model.densification, report);

@@ -1,6 +1,8 @@
 #include "colmap_seapoint/pipeline/map.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -9,6 +11,7 @@
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/colmap/database_copy.h"
+#include "colmap_seapoint/io/colmap/database_features.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/io/files/run_report_json.h"
@@ -45,16 +48,64 @@ LensRule LensRuleOf(const AutomaticReconstructorOptions& options) {
   return options.reader.camera_params.empty() ? LensRule::kFind : LensRule::kHold;
 }
 
+// How it maps, whatever it maps.
+std::string PlanText(const MappingPlan& plan) {
+  const MapperJob& job = plan.job;
+  return plan.colmap.version + LensText(job.lens) + (job.thins_matches ? "thinned" : "") +
+         (job.adjusts_principal_point ? "adjusted" : "") + (job.joins_models ? "joined" : "") +
+         (job.global_round ? "global" : "") + Text(job.first_round) + Text(job.later_rounds);
+}
+
 // The mapper's work depends on what the database holds, on what that was begun with, and on the
 // mapper.
 std::string Inputs(const MappingPlan& plan, const ColmapDatabase& database,
                    const WorkspaceState& state) {
-  const MapperJob& job = plan.job;
   const auto begun = state.Read("database");
-  return DatabaseFingerprint(database) + (begun ? begun->dump() : "") + plan.colmap.version +
-         LensText(job.lens) + (job.thins_matches ? "thinned" : "") +
-         (job.adjusts_principal_point ? "adjusted" : "") + (job.joins_models ? "joined" : "") +
-         (job.global_round ? "global" : "") + Text(job.first_round) + Text(job.later_rounds);
+  return DatabaseFingerprint(database) + (begun ? begun->dump() : "") + PlanText(plan);
+}
+
+// What the models were made of: a line a picture, its id, name, camera and SeaPoints.
+using PictureLines = std::set<std::string>;
+
+PictureLines LinesOf(const ColmapDatabase& database) {
+  PictureLines lines;
+  for (const DatabaseImage& image : ReadImages(database)) {
+    lines.insert(std::to_string(image.image_id) + " " + std::to_string(image.camera_id) + " " +
+                 image.name + " " + FeaturesFingerprint(database, image.image_id).value_or(""));
+  }
+  return lines;
+}
+
+// Beside the mapper's own record, which is forgotten as soon as it has to be done again.
+Stage ModelStage(const MappingPlan& plan) {
+  return {"model_to_continue", kMapperVersion, PlanText(plan), ""};
+}
+
+// Whether the cameras of all matched pictures are the model's.
+bool KnowsCameras(const fs::path& model_path, const std::vector<std::string>& pictures,
+                  const ColmapDatabase& database) {
+  const SparseModel model = ReadSparseModel(model_path, ModelContent::kPosesAndPoints);
+  const std::set<std::string> matched(pictures.begin(), pictures.end());
+  for (const DatabaseImage& image : ReadImages(database)) {
+    if (matched.count(image.name) > 0 && model.cameras.count(image.camera_id) == 0) return false;
+  }
+  return true;
+}
+
+// The model that an earlier run made of some of these pictures, as they are now and in the same
+// way, where it is one alone.
+std::optional<fs::path> ModelToContinue(const MappingPlan& plan, const ColmapDatabase& database,
+                                        const WorkspaceState& state,
+                                        const std::vector<fs::path>& models) {
+  if (models.size() != 1 || plan.job.lens == LensRule::kLeaveToMapper) return std::nullopt;
+  const auto made_of = ResultIfDone<PictureLines>(state, ModelStage(plan));
+  if (!made_of) return std::nullopt;
+  const PictureLines lines = LinesOf(database);
+  if (!std::includes(lines.begin(), lines.end(), made_of->begin(), made_of->end())) {
+    return std::nullopt;
+  }
+  if (!KnowsCameras(models.front(), plan.job.pictures, database)) return std::nullopt;
+  return models.front();
 }
 
 // The models below `sparse` that are ours.
@@ -180,6 +231,8 @@ Mapping MapPictures(MappingPlan plan, const ColmapDatabase& database, WorkspaceS
   using Seconds = std::vector<RunReport::Stage>;
   const auto work = [&]() -> StageOutput<Seconds> {
     RefuseForeignModels(plan.sparse, *state->Folder());
+    plan.job.continued_model =
+        ModelToContinue(plan, database, *state, OurModels(plan.sparse, *state->Folder()));
     RunReport report;
     {
       StageTimer timer(&report, "mapper");
@@ -189,7 +242,9 @@ Mapping MapPictures(MappingPlan plan, const ColmapDatabase& database, WorkspaceS
       RunMapper(plan.colmap, plan.job);
     }
     PutModelsInPlace(plan.job.output_path, plan.sparse, state->Folder());
-    return {report.stages, OurModels(plan.sparse, *state->Folder())};
+    const std::vector<fs::path> models = OurModels(plan.sparse, *state->Folder());
+    FinishStage(ModelStage(plan), LinesOf(database), models, state);
+    return {report.stages, models};
   };
   const Seconds seconds = RunStage<Seconds>(state, stage, work);
   return {StageFingerprint(stage), OurModels(plan.sparse, *state->Folder()), seconds};

@@ -29,6 +29,7 @@
 #include "colmap_seapoint/pipeline/densify_models.h"
 #include "colmap_seapoint/pipeline/extract.h"
 #include "colmap_seapoint/pipeline/intake/take_in.h"
+#include "colmap_seapoint/pipeline/job_size.h"
 #include "colmap_seapoint/pipeline/map.h"
 #include "colmap_seapoint/pipeline/match.h"
 #include "colmap_seapoint/pipeline/orthomosaic_models.h"
@@ -44,70 +45,37 @@ namespace {
 namespace fs = std::filesystem;
 using Options = AutomaticReconstructorOptions;
 
-bool MatchesAllPairs(const Options& options, size_t num_pictures) {
-  if (options.matcher != "auto") return options.matcher == "exhaustive";
-  return num_pictures <= kMaxImagesForAllPairs;
-}
-
 std::vector<std::string> NamesOf(const PictureSet& pictures) {
   std::vector<std::string> names;
   for (const ReadablePicture& picture : pictures.readable) names.push_back(picture.name);
   return names;
 }
 
-// The stage that begins the database: all that decides which rows it holds, the SeaPoints apart.
-Stage DatabaseStage(const Options& options, const std::vector<ReadablePicture>& pictures) {
-  std::string text = OptionsFingerprint(OptionValues(options.reader)) +
-                     OptionsFingerprint(OptionValues(options.matching));
-  text += MatchesAllPairs(options, pictures.size())
-              ? "exhaustive"
-              : OptionsFingerprint(OptionValues(options.pairs)) +
-                    std::to_string(options.run.random_seed);
+// All that decides which rows the database holds, the SeaPoints apart.
+DatabaseInputs InputsOfDatabase(const Options& options,
+                                const std::vector<ReadablePicture>& pictures) {
+  DatabaseInputs inputs;
+  inputs.options = OptionsFingerprint(OptionValues(options.reader)) +
+                   OptionsFingerprint(OptionValues(options.matching));
   for (const ReadablePicture& picture : pictures) {
     const ImageInfo& info = picture.info;
     const auto focal = FocalLengthFromExif(info.camera, info.width, info.height);
-    text += "\n" + picture.name + " " + std::to_string(info.width) + " " +
-            std::to_string(info.height) + " " + std::to_string(focal ? focal->px : 0) + " " +
-            CameraKey(info.camera);
+    inputs.pictures.push_back(picture.name + " " + std::to_string(info.width) + " " +
+                              std::to_string(info.height) + " " +
+                              std::to_string(focal ? focal->px : 0) + " " + CameraKey(info.camera));
   }
+  return inputs;
+}
+
+// The stage that begins the database.
+Stage DatabaseStage(const Options& options, const DatabaseInputs& inputs) {
+  std::string text = inputs.options;
+  text += MatchesAllPairs(options, inputs.pictures.size())
+              ? "exhaustive"
+              : OptionsFingerprint(OptionValues(options.pairs)) +
+                    std::to_string(options.run.random_seed);
+  for (const std::string& picture : inputs.pictures) text += "\n" + picture;
   return {"database", kMatchingVersion, text, ""};
-}
-
-JobSize SizeOf(const Options& options, int64_t num_pictures, double megapixels) {
-  const bool matches_all_pairs = MatchesAllPairs(options, static_cast<size_t>(num_pictures));
-  JobSize size;
-  size.num_pictures = num_pictures;
-  size.megapixels = megapixels;
-  size.finds_look_alikes = !matches_all_pairs && options.pairs.loop_detection;
-  size.num_pairs = matches_all_pairs
-                       ? size.num_pictures * (size.num_pictures - 1) / 2
-                       : ExpectedSequentialPairs(size.num_pictures, options.pairs.overlap,
-                                                 size.finds_look_alikes);
-  size.step = options.densification.step;
-  size.writes_maps = options.densification.write_maps;
-  size.makes_map = options.makes_map;
-  size.reports_completeness = options.report_completeness;
-  size.finds_markers = !FamiliesToFind(options.scale).empty();
-  size.num_threads = EffectiveNumThreads(options.run.num_threads);
-  return size;
-}
-
-JobSize SizeOf(const Options& options, const std::vector<ReadablePicture>& pictures) {
-  double megapixels = 0;
-  for (const ReadablePicture& picture : pictures) {
-    megapixels += 1e-6 * picture.info.width * picture.info.height;
-  }
-  return SizeOf(options, static_cast<int64_t>(pictures.size()), megapixels);
-}
-
-// Before the pictures are read, and where they have to be made of something else first.
-JobSize SizeBeforeIntake(const Options& options, const fs::path& given) {
-  const IntakeSize intake = ExpectIntake(given);
-  JobSize size = SizeOf(options, intake.num_pictures, intake.megapixels);
-  size.num_copies = intake.num_copies;
-  size.video_seconds = intake.video_seconds;
-  size.decoded_megapixels = intake.decoded_megapixels;
-  return size;
 }
 
 // Whether a stage is up to date is known when its turn comes; here that its record is there, beside
@@ -370,6 +338,7 @@ CommandResult WriteReport(const Workspace& workspace, const std::vector<ModelSum
 CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& given) {
   given.Check();
   const Options options = WithRigsCameras(given);
+  if (options.estimate_only) return EstimateJob(options);
   Workspace workspace(options.image_path, options.workspace_path);
   MappingPlan plan = PlanMapping(options, workspace);
   WorkspaceState state(workspace.root, workspace.Names());
@@ -383,11 +352,12 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& giv
   plan.job.image_path = workspace.images;
   const PictureSet pictures = ReadPictures(options, workspace);
   CheckScaleNames(options.scale, NamesOf(pictures));
-  const Stage begin = DatabaseStage(options, pictures.readable);
+  const DatabaseInputs inputs = InputsOfDatabase(options, pictures.readable);
+  const Stage begin = DatabaseStage(options, inputs);
   PlanJob(SizeOf(options, pictures.readable), workspace.root, options.check_disk,
           DoneBefore(begin, state), &progress);
-  ColmapDatabase database =
-      OpenWorkspaceDatabase(workspace.database, pictures.readable, options.reader, begin, &state);
+  ColmapDatabase database = OpenWorkspaceDatabase(workspace.database, pictures.readable,
+                                                  options.reader, begin, inputs, &state);
   const Stage second_chance = SecondChanceStage(options, begin);
   ExtractAndMatch(options, workspace, pictures, second_chance, &database, &state, &report);
   FindMarkersOfDive(options, workspace, &state, &report);

@@ -41,6 +41,9 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
   table->Add("check_disk", &check_disk,
              "end before any work where the disk is too small by far; 0 = go on all the same",
              "ours");
+  table->Add("estimate_only", &estimate_only,
+             "say what the job will take in time, disk and memory, as JSON, and do nothing",
+             "ours");
   table->Add("map", &makes_map,
              "make relief and orthomosaic of every model, in map/; 0 = none, and those of earlier "
              "runs are removed",

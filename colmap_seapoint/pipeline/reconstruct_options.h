@@ -31,6 +31,7 @@ struct AutomaticReconstructorOptions {
   bool adjust_principal_point = true;
   bool join_models = true;
   bool check_disk = true;
+  bool estimate_only = false;
   std::string rig;
   ScaleSources scale;
   FrameSelectionOptions frames;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "colmap_seapoint/io/files/atomic_file.h"
+#include "colmap_seapoint/io/files/input_stream.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -31,10 +32,10 @@ std::string NameOf(int image_idx, const SparseModel& model) {
 }  // namespace
 
 void WritePairsCsv(const std::filesystem::path& path, const SparseModel& model,
-                   const SequenceReport& report) {
+                   const SequenceReport& report, const std::string& earlier_rows) {
   std::ostringstream out;
   out.imbue(std::locale::classic());
-  out << kHeader;
+  out << kHeader << earlier_rows;
   for (const PairReport& pair : report.pairs) {
     out << NameOf(pair.image_idx1, model) << ',' << NameOf(pair.image_idx2, model) << ','
         << pair.pass << ',' << pair.baseline << ',' << pair.overlap << ',' << pair.num_oa << ','
@@ -44,6 +45,15 @@ void WritePairsCsv(const std::filesystem::path& path, const SparseModel& model,
         << Field(pair.skipped) << '\n';
   }
   WriteTextFile(path, out.str());
+}
+
+std::string ReadPairRows(const std::filesystem::path& path) {
+  InputStream file(path);
+  std::string header;
+  std::getline(file, header);
+  std::ostringstream rows;
+  if (file.peek() != std::istream::traits_type::eof()) rows << file.rdbuf();
+  return rows.str();
 }
 
 }  // namespace colmap_seapoint

@@ -1,5 +1,6 @@
 #include "colmap_seapoint/workspace/workspace_database.h"
 
+#include <set>
 #include <system_error>
 
 #include "colmap_seapoint/base/error.h"
@@ -65,16 +66,37 @@ void BeginAnew(const fs::path& path, const fs::path& state_folder,
   fs::rename(fresh_path, path);
 }
 
+// Whether all that the database was begun with is among the inputs, and models were made of it.
+bool HasGrown(const DatabaseInputs& inputs, const Stage& stage, const WorkspaceState& state) {
+  const auto begun = state.Read(stage.name);
+  if (!begun || !state.Read("mapper")) return false;
+  try {
+    const auto& were = begun->at("result");
+    if (were.at("options") != inputs.options) return false;
+    const std::set<std::string> are(inputs.pictures.begin(), inputs.pictures.end());
+    for (const std::string picture : were.at("pictures")) {
+      if (are.count(picture) == 0) return false;
+    }
+    return true;
+  } catch (const nlohmann::json::exception&) {
+    return false;  // an earlier version kept nothing of it
+  }
+}
+
 }  // namespace
 
 ColmapDatabase OpenWorkspaceDatabase(const fs::path& database_path,
                                      const std::vector<ReadablePicture>& pictures,
                                      const ImageReaderOptions& reader, const Stage& stage,
-                                     WorkspaceState* state) {
+                                     const DatabaseInputs& inputs, WorkspaceState* state) {
   state->Folder()->Claim({database_path.filename().string()});
   if (!ReadIfDone(*state, stage)) {
-    if (fs::exists(database_path)) BeginAnew(database_path, state->StateFolder(), pictures, reader);
-    FinishStage(stage, nullptr, {}, state);
+    if (fs::exists(database_path) && HasGrown(inputs, stage, *state)) {
+      LogInfo("Pictures came in: those that were there keep their SeaPoints and matches");
+    } else if (fs::exists(database_path)) {
+      BeginAnew(database_path, state->StateFolder(), pictures, reader);
+    }
+    FinishStage(stage, {{"options", inputs.options}, {"pictures", inputs.pictures}}, {}, state);
   }
   return ColmapDatabase(database_path, ColmapDatabase::Mode::kCreateIfMissing);
 }

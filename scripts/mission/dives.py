@@ -1,20 +1,23 @@
 """What a mission consists of and what became of it, for run_mission.sh and its Snakefile.
 
 dives.py list MISSION            a line a dive: what its files hold, and its name
-dives.py forget_failed MISSION   dives that failed will be tried again
-dives.py run MISSION DIVE BINARY QUALITY DIGEST    automatic_reconstructor on one dive, and the page
-dives.py follow MISSION          what the dives' logs say from now on, until it is stopped
+dives.py forget_failed MISSION   steps that failed, or were stopped, will be tried again
+dives.py follow MISSION          what the logs say from now on, until it is stopped
 dives.py summary MISSION         a line a dive; exits with 0, 3 or 1
 """
 import hashlib
 import json
 import os
-import subprocess
+import signal
 import sys
 import time
 
 RESULTS = "results"
 INCOMPLETE = 3  # automatic_reconstructor: done, but for pictures that it names
+# The steps of a dive. Each leaves <step's record>, <log> and <workspace> in the dive's results.
+RECORDS = {"coarse": "coarse.json", "full": "outcome.json"}
+LOGS = {"coarse": "coarse_log.txt", "full": "log.txt"}
+WORKSPACES = {"coarse": "coarse/workspace", "full": "workspace"}
 
 
 def dives(mission):
@@ -32,8 +35,20 @@ def image_path(mission, dive):
     return folder
 
 
+def project_path(mission, dive):
+    """The dive's own options; None where it has none."""
+    path = os.path.join(mission, dive, "project.ini")
+    return path if os.path.isfile(path) else None
+
+
 def result_path(mission, dive, name=""):
     return os.path.join(mission, RESULTS, dive, name)
+
+
+def say(mission, text):
+    """Into the mission's log, with the time; follow() brings it to the terminal."""
+    with open(os.path.join(mission, RESULTS, "log.txt"), "a", encoding="utf-8") as log:
+        log.write(time.strftime("%Y-%m-%d %H:%M:%S ") + text + "\n")
 
 
 def write_whole(path, text):
@@ -93,55 +108,42 @@ def digest(mission, dive):
     return whole.hexdigest()
 
 
-def outcome(mission, dive):
-    return read_json(result_path(mission, dive, "outcome.json"))
+def outcome(mission, dive, step="full"):
+    return read_json(result_path(mission, dive, RECORDS[step]))
 
 
 def has_failed(result):
     return not result or result.get("exit_code") not in (0, INCOMPLETE)
 
 
+def is_current(result, dive_digest, quality, program):
+    """Whether a step came out, and of these files, at this quality, by this program."""
+    made_of = [result.get(key) for key in ("digest", "quality", "program")] if result else None
+    return not has_failed(result) and made_of == [dive_digest, quality, program]
+
+
+def state(mission, dive):
+    """What there is of a dive, "full", "coarse", "failed" or "not begun"; and why it is not more."""
+    results = {step: outcome(mission, dive, step) for step in RECORDS}
+    if not has_failed(results["full"]):
+        return "full", ""
+    reason = (results["full"] or {}).get("error") or "not begun"
+    if not has_failed(results["coarse"]):
+        return "coarse", reason
+    has_begun = [result for result in results.values() if result and result.get("seconds") is not None]
+    if not has_begun:
+        return "not begun", reason if results["full"] else ""
+    return "failed", has_begun[-1].get("error", "")
+
+
 def forget_failed(mission):
     for dive in dives(mission):
-        if has_failed(outcome(mission, dive)):
-            try:
-                os.remove(result_path(mission, dive, "outcome.json"))
-            except FileNotFoundError:
-                pass
-
-
-def last_error(log_path):
-    """The last line of a log that begins with "error:", without that."""
-    found = ""
-    try:
-        with open(log_path, encoding="utf-8", errors="replace") as log:
-            for line in log:
-                if line.startswith("error:"):
-                    found = line[len("error:"):].strip()
-    except OSError:
-        pass
-    return found
-
-
-def run(mission, dive, binary, quality, dive_digest):
-    """Writes what became of the dive, whatever it is, and ends well: others are to follow."""
-    log_path = result_path(mission, dive, "log.txt")
-    os.makedirs(os.path.dirname(log_path), exist_ok=True)
-    command = [binary, "automatic_reconstructor", "--image_path", image_path(mission, dive),
-               "--workspace_path", result_path(mission, dive, "workspace"), "--quality", quality]
-    project = os.path.join(mission, dive, "project.ini")
-    if os.path.isfile(project):
-        command += ["--project_path", project]
-    began = time.time()
-    with open(log_path, "w", encoding="utf-8") as log:
-        exit_code = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=log,
-                                   stderr=subprocess.STDOUT, check=False).returncode
-    result = {"dive": dive, "digest": dive_digest, "quality": quality, "exit_code": exit_code,
-              "seconds": round(time.time() - began, 1), "ended": int(time.time()),
-              "error": "" if exit_code in (0, INCOMPLETE) else
-                       last_error(log_path) or f"ended with exit code {exit_code}"}
-    write_whole(result_path(mission, dive, "outcome.json"), json.dumps(result, indent=2) + "\n")
-    write_page(mission)
+        for step, record in RECORDS.items():
+            if has_failed(outcome(mission, dive, step)):
+                try:
+                    os.remove(result_path(mission, dive, record))
+                except FileNotFoundError:
+                    pass
 
 
 def write_page(mission):
@@ -149,57 +151,82 @@ def write_page(mission):
     write_whole(os.path.join(mission, RESULTS, "mission.html"), mission_page.page(mission))
 
 
-def follow(mission):
-    """The newest line of each log that has grown, every five seconds, after the name of its dive."""
-    def size_of(dive):
-        try:
-            return os.path.getsize(result_path(mission, dive, "log.txt"))
-        except OSError:
-            return 0
+def last_line(path, size):
+    try:
+        with open(path, "rb") as log:
+            log.seek(max(0, size - 1000))
+            lines = log.read().decode("utf-8", "replace").splitlines()
+    except OSError:
+        lines = []
+    return lines[-1:]
 
-    sizes = {dive: size_of(dive) for dive in dives(mission)}
+
+def follow(mission):
+    """What is new in the mission's own log, and the newest line of each dive's log that has grown,
+    after the name of its dive, every five seconds."""
+    def sizes():
+        found = {}
+        for dive in dives(mission):
+            for name in LOGS.values():
+                path = result_path(mission, dive, name)
+                found[path] = (dive, os.path.getsize(path) if os.path.exists(path) else 0)
+        return found
+
+    own = open(os.path.join(mission, RESULTS, "log.txt"), "a+", encoding="utf-8")
+    own.seek(0, os.SEEK_END)
+    before = sizes()
+
+    def tell_the_rest(*_):
+        sys.stderr.write(own.read())
+        sys.exit(0)
+
+    signal.signal(signal.SIGTERM, tell_the_rest)
     while True:
         time.sleep(5)
-        for dive in dives(mission):
-            size = size_of(dive)
-            if size == sizes.get(dive, 0):
-                continue
-            sizes[dive] = size
-            try:
-                with open(result_path(mission, dive, "log.txt"), "rb") as log:
-                    log.seek(max(0, size - 1000))
-                    lines = log.read().decode("utf-8", "replace").splitlines()
-            except OSError:
-                continue
-            if lines:
-                print(f"{dive}: {lines[-1]}", file=sys.stderr, flush=True)
+        sys.stderr.write(own.read())
+        try:
+            now = sizes()
+        except OSError:
+            continue  # the mission's disk is gone: run_mission.sh says so
+        for path, (dive, size) in now.items():
+            if size and (dive, size) != before.get(path):
+                for line in last_line(path, size):
+                    print(f"{dive}: {line}", file=sys.stderr)
+        sys.stderr.flush()
+        before = now
 
 
-def answer(mission, dive):
-    """The first line of the dive's summary."""
+def answer(mission, dive, step="full"):
+    """The first line of the dive's summary, and what of the ground is covered."""
+    path = result_path(mission, dive, WORKSPACES[step] + "/report/summary.txt")
     try:
-        path = result_path(mission, dive, "workspace/report/summary.txt")
         with open(path, encoding="utf-8", errors="replace") as file:
-            return file.readline().strip()
+            lines = [line.strip() for line in file]
     except OSError:
         return ""
+    covered = [line[len("completeness: "):] for line in lines if line.startswith("completeness: ")]
+    return "; ".join(lines[:1] + covered)
 
 
 def summary(mission):
     write_page(mission)
-    names = dives(mission)
-    results = {dive: outcome(mission, dive) for dive in names}
-    for dive, result in results.items():
-        if has_failed(result):
-            print(f"{dive}: FAILED: {(result or {}).get('error') or 'not run'}")
-        else:
-            left_out = ", not whole" if result["exit_code"] == INCOMPLETE else ""
+    exit_codes = []
+    for dive in dives(mission):
+        what, reason = state(mission, dive)
+        exit_codes.append(outcome(mission, dive)["exit_code"] if what == "full" else what)
+        if what == "full":
+            left_out = ", not whole" if exit_codes[-1] == INCOMPLETE else ""
             print(f"{dive}: {answer(mission, dive)}{left_out}")
+        elif what == "coarse":
+            print(f"{dive}: COARSE: {answer(mission, dive, 'coarse')} (in full: {reason})")
+        elif what == "failed":
+            print(f"{dive}: FAILED: {reason}")
+        else:
+            print(f"{dive}: NOT BEGUN{': ' if reason else ''}{reason}")
     print(f"page: {os.path.join(mission, RESULTS, 'mission.html')}")
-    if all(has_failed(result) for result in results.values()):
+    if all(code in ("failed", "not begun") for code in exit_codes):
         return 1
-    is_whole = all(result and result.get("exit_code") == 0 for result in results.values())
-    return 0 if is_whole else INCOMPLETE
+    return 0 if all(code == 0 for code in exit_codes) else INCOMPLETE
 
 
 def main(arguments):
@@ -209,8 +236,6 @@ def main(arguments):
             print(digest(mission, dive), dive)
     elif command == "forget_failed":
         forget_failed(mission)
-    elif command == "run":
-        run(mission, *arguments[2:])
     elif command == "follow":
         follow(mission)
     elif command == "summary":

@@ -53,6 +53,33 @@ TEST(BundleAdjustmentTest, HoldsThePrincipalPointWhenTold) {
   EXPECT_NE(model.cameras.at(1).params[4], 0);
 }
 
+TEST(BundleAdjustmentTest, HeldPosesStayAndTheOthersComeToThem) {
+  const SparseModel exact = ExactSurvey(ExactLens(), 8);
+  SparseModel start = exact;
+  BundleAdjustmentOptions options;
+  options.lenses = AllLensesHeld(exact);
+  for (PosedImage& image : start.images) {
+    if (image.image_id <= 13) {
+      options.held_images.insert(image.image_id);
+    } else {
+      image.cam_from_world.translation += Eigen::Vector3d(0.02, -0.01, 0.015);
+    }
+  }
+  const SparseModel model = AdjustBundle(options, start).value();
+  EXPECT_EQ(model.cameras.at(1).params, exact.cameras.at(1).params);
+  ASSERT_EQ(model.images.size(), 16u);
+  for (size_t i = 0; i < model.images.size(); ++i) {
+    const Rigid3d& is = model.images[i].cam_from_world;
+    const Rigid3d& truth = exact.images[i].cam_from_world;
+    if (options.held_images.count(model.images[i].image_id) > 0) {
+      EXPECT_EQ(is.translation, truth.translation);
+      EXPECT_EQ(is.rotation.coeffs(), truth.rotation.coeffs());
+    } else {
+      EXPECT_LT((is.translation - truth.translation).norm(), 1e-6);
+    }
+  }
+}
+
 void AddNoise(double sigma, SparseModel* model) {
   std::mt19937 random(10);
   std::normal_distribution<double> normal(0, sigma);

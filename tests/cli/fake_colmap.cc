@@ -6,6 +6,7 @@
 //   no_model  ends like COLMAP 3.8 without any   crash       a half-written model, then SIGABRT
 //   global    has a global_mapper too, which finds all; the mapper fails
 //   global_partial  has one that leaves a picture out; the mapper finds all
+//   continues  knows the options that --input_path asks for
 //   babble    first prints 200 MB without the end of a line
 // Its point_triangulator leaves the points as they are.
 // FAKE_COLMAP_SECONDS: how long the mapper takes. FAKE_COLMAP_PID: file that gets its process id.
@@ -48,6 +49,11 @@ void PrintHelp() {
       << "  --image_path arg\n  --image_list_path arg\n  --input_path arg\n  --output_path arg\n  "
          "--Mapper.num_threads arg (=-1)\n"
       << "  --Mapper.min_model_size arg (=10)\n";
+  if (Variable("FAKE_COLMAP_MODE", "model") != "continues") return;
+  for (const char* name :
+       {"fix_existing_images", "ba_refine_focal_length", "ba_refine_extra_params"}) {
+    std::cout << "  --Mapper." << name << " arg (=0)\n";
+  }
 }
 
 PosedImage PoseImage(const DatabaseImage& image, const Camera& camera,

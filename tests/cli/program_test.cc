@@ -99,7 +99,7 @@ TEST_F(Program, CommandsHaveNamesSummariesAndFreshOptions) {
     EXPECT_EQ(command.foreign.group, command.name == "automatic_reconstructor" ? "Mapper" : "");
     ASSERT_EQ(table.Set("random_seed", "77"), "");
   }
-  EXPECT_EQ(names.size(), 14u);
+  EXPECT_EQ(names.size(), 15u);
   OptionTable table;
   AllCommands()[0].bind(&table);
   EXPECT_EQ(table.Find("random_seed")->default_value, "0");

@@ -126,6 +126,28 @@ TEST_F(RunMapperTest, LeftoversOfEarlierRunsAreRemoved) {
   EXPECT_FALSE(fs::exists(job_.output_path / "7"));
 }
 
+TEST_F(RunMapperTest, AModelIsContinuedAndWhatItTakesIsTaken) {
+  colmap_.SetHelp(MapperHelp(
+      "3.8", {"Mapper.num_threads", "Mapper.fix_existing_images", kRefineFocal, kRefine}));
+  WriteSparseModelBinary(dir_ / "before", Part(1, 6));
+  job_.continued_model = dir_ / "before";
+  job_.lens = LensRule::kFind;
+  colmap_.Leaves(kMapper, 1, "", Part(1, 9));  // the tenth is left over
+  Run();
+  EXPECT_EQ(colmap_.Value(kMapper, 1, "input_path"), (dir_ / "before").string());
+  EXPECT_EQ(colmap_.Value(kMapper, 1, "Mapper.fix_existing_images"), "1");
+  EXPECT_EQ(colmap_.Value(kMapper, 1, kRefineFocal), "0");
+  EXPECT_EQ(colmap_.NumCalls(kMapper), 1);  // one alone makes no further round
+  EXPECT_EQ(NumModels(), 1u);
+  EXPECT_EQ(NamesIn("0").size(), 9u);
+  // A mapper that fails at it is asked for all anew.
+  colmap_.Ends(kMapper, 2, "cannot", 1);
+  colmap_.Leaves(kMapper, 3, "0", survey_);
+  Run();
+  EXPECT_EQ(colmap_.Value(kMapper, 3, "input_path"), "");
+  EXPECT_EQ(NamesIn("0").size(), 10u);
+}
+
 TEST_F(RunMapperTest, LaterRoundsLookForTheMissingAndNumberTheirModelsOn) {
   colmap_.Leaves(kMapper, 1, "0", Part(1, 4));
   colmap_.Leaves(kMapper, 2, "0", Part(5, 7));

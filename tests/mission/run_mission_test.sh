@@ -53,6 +53,36 @@ said '^tw ö: FAILED: .*min_confidence'
 rm "$mission/tw ö/project.ini"
 run 0 "$mission"
 
+# With time enough a new dive ends as without a deadline, by way of a coarse answer.
+cp -r "$mission/one" "$mission/three"
+run 0 "$mission" --hours 1
+grep -q 'three: coarse done' "$mission/results/log.txt" || fail "no coarse answer came first"
+! grep -q 'one: coarse' "$mission/results/log.txt" || fail "what is done got a coarse answer"
+said '^three: 4 of 4 pictures used'
+[ ! -e "$mission/results/three/coarse" ] || fail "the coarse answer was not cleared away"
+
+# The same model in two blocks, once.
+blocks() {  # EXIT_CODE [ARGUMENT...]
+  local expected=$1 status=0
+  shift
+  "$source_dir/scripts/densify_blocks.sh" --blocks 2 --threads 1 --binary "$binary" "$@" \
+    >"$folder/out" 2>&1 || status=$?
+  [ "$status" -eq "$expected" ] || fail "blocks: exit code $status, not $expected"
+}
+workspace=$mission/results/one/workspace
+of_model=(--image_path "$mission/one/images" --input_path "$workspace/sparse/0")
+blocks 0 "$folder/in blocks" "${of_model[@]}" --database_path "$workspace/database.db"
+said "^$folder/in blocks/fused.ply"
+points_of() { head -c 300 "$1" | sed -n 's/^element vertex *\([0-9]*\).*/\1/p'; }
+whole=$(points_of "$workspace/dense/0/fused.ply") joined=$(points_of "$folder/in blocks/fused.ply")
+[ $((joined * 10)) -gt $((whole * 9)) ] && [ $((joined * 10)) -lt $((whole * 11)) ] ||
+  fail "$joined points in blocks, $whole at once"
+made=$(stat -c %y "$folder/in blocks"/*/fused.ply)
+blocks 0 "$folder/in blocks" "${of_model[@]}" --database_path "$workspace/database.db"
+[ "$(stat -c %y "$folder/in blocks"/*/fused.ply)" = "$made" ] || fail "blocks were made again"
+blocks 1 "$folder/no blocks" --image_path "$folder/nowhere" --input_path "$workspace/sparse/0"
+blocks 2 "$folder/no blocks" "${of_model[@]}" --block 1/2
+
 # Without anything, and without anything good.
 mkdir "$folder/nothing"
 run 1 "$folder/nothing"
@@ -60,6 +90,8 @@ said 'holds no dive'
 mkdir "$folder/nothing/empty"
 run 1 "$folder/nothing"
 run 2 "$mission" --jobs none
+run 2 "$mission" --hours soon
+run 2 "$mission" --deadline 25:00
 run 1 "$folder/elsewhere"
 said 'no such folder'
 echo "run_mission: all as promised"

@@ -44,6 +44,13 @@ class DensifyModelsTest : public StripSurvey {
     return Densify(models, ReconstructorOptions());
   }
 
+  // What is covered is known where the last pass is to fill what is not.
+  AutomaticReconstructorOptions Completed() const {
+    AutomaticReconstructorOptions options = ReconstructorOptions();
+    options.densification.completion = true;
+    return options;
+  }
+
   // Makes a table older than it is; true as long as it was not made anew.
   void Mark(const std::string& model) const {
     fs::last_write_time(Space().dense / model / "pairs.csv", fs::file_time_type());
@@ -90,6 +97,42 @@ TEST_F(DensifyModelsTest, IsDoneOnce) {
   EXPECT_EQ(second.stages[0].name, "partial_densifier 0");
   EXPECT_EQ(second.stages[0].wall_seconds, first.stages[0].wall_seconds);
   EXPECT_EQ(models[1].densification.images_in, 3);
+}
+
+TEST_F(DensifyModelsTest, PicturesThatComeInAddToTheCloudThatIsThere) {
+  std::vector<ModelSummary> models = WriteModels({4});
+  const RunReport first = Densify(&models, Completed());
+  const std::string cloud = ReadBytes(models[0].cloud_path);
+  const std::string rows = ReadBytes(Space().dense / "0" / "pairs.csv");
+  models = WriteModels({7});
+  RunReport second;
+  const std::string log = LogOf([&] { second = Densify(&models, Completed(), "more pictures"); });
+  EXPECT_NE(log.find("The cloud of 4 pictures stays as it is; 3 add theirs"), std::string::npos)
+      << log;
+  const auto body = [](const std::string& ply) { return ply.substr(ply.find("end_header\n")); };
+  const std::string more = ReadBytes(models[0].cloud_path);
+  EXPECT_EQ(body(more).compare(0, body(cloud).size(), body(cloud)), 0);
+  EXPECT_GT(body(more).size(), body(cloud).size());
+  EXPECT_EQ(ReadBytes(Space().dense / "0" / "pairs.csv").compare(0, rows.size(), rows), 0);
+  EXPECT_GT(second.pairs, first.pairs);
+  EXPECT_EQ(second.points, static_cast<int64_t>(ReadCloud(models[0].cloud_path).size()));
+  // As much as from scratch, near enough: nothing twice, nothing lost.
+  fs::remove_all(Space().root / "state");
+  models = WriteModels({7});
+  const RunReport whole = Densify(&models, Completed());
+  EXPECT_NEAR(static_cast<double>(second.points), static_cast<double>(whole.points),
+              0.05 * static_cast<double>(whole.points));
+}
+
+TEST_F(DensifyModelsTest, ACloudOfPosesThatMovedIsMadeAnew) {
+  std::vector<ModelSummary> models = WriteModels({4});
+  Densify(&models, Completed());
+  models = WriteModels({7});
+  SparseModel moved = ReadSparseModel(models[0].path);
+  moved.images[1].cam_from_world.translation.x() += 1e-9;
+  WriteSparseModelBinary(models[0].path, moved);
+  const std::string log = LogOf([&] { Densify(&models, Completed(), "more pictures"); });
+  EXPECT_EQ(log.find("stays as it is"), std::string::npos) << log;
 }
 
 TEST_F(DensifyModelsTest, IsDoneAgainWhenSomethingChanges) {

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/image/image_file.h"
 #include "colmap_seapoint/workspace/stage_runner.h"
 #include "tests/cli/database_tables.h"
@@ -72,6 +74,35 @@ TEST_F(Reconstruct, AgainIsTheSameWithoutTheWork) {
   EXPECT_TRUE(ReadTree(Root() / "sparse") == models);
   EXPECT_TRUE(ReadTree(Root() / "dense") == clouds);
   EXPECT_TRUE(ReadTables(Root() / "database.db") == rows);
+}
+
+TEST_F(Reconstruct, PicturesThatComeInAreAddedToTheModel) {
+  const FakeColmapMode continues("continues");
+  RunAutomaticReconstructor(ReconstructorOptions());
+  const SparseModel before = ReadSparseModel(Root() / "sparse/0");
+  const auto matches = QueryRows(Root() / "database.db", "SELECT pair_id, data FROM matches");
+  WritePictures(6);
+  const std::string log = LogOf([&] { RunAutomaticReconstructor(ReconstructorOptions()); });
+  EXPECT_NE(log.find("2 pictures added to the 4 that were there"), std::string::npos) << log;
+  const SparseModel after = ReadSparseModel(Root() / "sparse/0");
+  ASSERT_EQ(after.images.size(), 6u);
+  for (size_t i = 0; i < before.images.size(); ++i) {
+    EXPECT_EQ(after.images[i].name, before.images[i].name);
+    EXPECT_EQ(after.images[i].cam_from_world.translation,
+              before.images[i].cam_from_world.translation);
+  }
+  const auto more = QueryRows(Root() / "database.db", "SELECT pair_id, data FROM matches");
+  EXPECT_EQ(more.size(), 15u);
+  for (const auto& row : matches) {
+    EXPECT_NE(std::find(more.begin(), more.end(), row), more.end());
+  }
+  // And once more is nothing to do; a model that was tampered with is not continued.
+  EXPECT_NE(LogOf([&] { RunAutomaticReconstructor(ReconstructorOptions()); }).find("The models in"),
+            std::string::npos);
+  WriteSparseModelBinary(Root() / "sparse/0", before);
+  const std::string anew = LogOf([&] { RunAutomaticReconstructor(ReconstructorOptions()); });
+  EXPECT_EQ(anew.find("pictures added to"), std::string::npos) << anew;
+  EXPECT_EQ(ReadSparseModel(Root() / "sparse/0").images.size(), 6u);
 }
 
 TEST_F(Reconstruct, TheMatcherIsChosenByTheNumberOfPicturesOrTheUser) {

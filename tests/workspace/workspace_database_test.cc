@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <set>
 
@@ -29,8 +30,11 @@ class WorkspaceDatabase : public StripSurvey {
 
   ColmapDatabase Open(const std::string& inputs, const ImageReaderOptions& reader = {}) const {
     WorkspaceState state(Root());
-    return OpenWorkspaceDatabase(Path(), ReadPictureSet(ExtractorOptions()).readable, reader,
-                                 {"database", "1", inputs, ""}, &state);
+    const auto pictures = ReadPictureSet(ExtractorOptions()).readable;
+    DatabaseInputs remembered = {options_, {}};
+    for (const ReadablePicture& picture : pictures) remembered.pictures.push_back(picture.name);
+    return OpenWorkspaceDatabase(Path(), pictures, reader, {"database", "1", inputs, ""},
+                                 remembered, &state);
   }
 
   // Extracts and matches all pictures, as the chain does.
@@ -48,7 +52,39 @@ class WorkspaceDatabase : public StripSurvey {
   }
 
   std::map<std::string, TableRows> Tables() const { return ReadTables(Path()); }
+
+  std::string options_ = "options";
 };
+
+TEST_F(WorkspaceDatabase, GrowsWithPicturesThatComeInAfterItsModelsWereMade) {
+  OpenAndFill("a");
+  const auto before = Tables();
+  WritePictures(kNumPictures + 1);
+  { WorkspaceState(Root()).Write("mapper", {{"fingerprint", "of models"}}); }
+  const std::string log = LogOf([&] { Open("b"); });
+  EXPECT_NE(log.find("Pictures came in"), std::string::npos) << log;
+  EXPECT_EQ(Tables(), before);
+  OpenAndFill("b");
+  const auto after = Tables();
+  EXPECT_EQ(after.at("two_view_geometries").size(), 6u);
+  for (const auto& row : before.at("two_view_geometries")) {
+    const auto& rows = after.at("two_view_geometries");
+    EXPECT_NE(std::find(rows.begin(), rows.end(), row), rows.end());
+  }
+  // One that goes, or other options, begin it anew.
+  options_ = "others";
+  EXPECT_NE(LogOf([&] { Open("c"); }).find("begun anew"), std::string::npos);
+  OpenAndFill("c");
+  fs::remove(Images() / "img1.png");
+  WriteImage(Images() / "img9.png", StripPicture(9));
+  EXPECT_NE(LogOf([&] { Open("d"); }).find("begun anew"), std::string::npos);
+}
+
+TEST_F(WorkspaceDatabase, IsBegunAnewWithMorePicturesWhereNoModelWasMade) {
+  OpenAndFill("a");
+  WritePictures(kNumPictures + 1);
+  EXPECT_NE(LogOf([&] { Open("b"); }).find("begun anew"), std::string::npos);
+}
 
 TEST_F(WorkspaceDatabase, IsCreated) {
   const ColmapDatabase database = Open("a");

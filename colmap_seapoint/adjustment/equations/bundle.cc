@@ -161,11 +161,15 @@ std::map<uint32_t, LensFreedom> AllLensesHeld(const SparseModel& model) {
   return lenses;
 }
 
-Bundle MakeBundle(const SparseModel& model, const std::map<uint32_t, LensFreedom>& freedom) {
+Bundle MakeBundle(const SparseModel& model, const std::map<uint32_t, LensFreedom>& freedom,
+                  const std::set<uint32_t>& held_images) {
   const std::vector<uint64_t> ids = IdsOf(model);
   const std::vector<Candidate> observations = SortByPoint(FindCandidates(model, ids));
   Bundle bundle;
   AddPictures(model, freedom, observations, &bundle);
+  for (const uint32_t idx : bundle.image_idx) {
+    bundle.holds_pose.push_back(held_images.count(model.images[idx].image_id) > 0);
+  }
   AddObservations(model, ids, observations, &bundle);
   IndexByPicture(&bundle);
   ListShares(&bundle);
@@ -195,6 +199,7 @@ BundleValues ReadValues(const Bundle& bundle, const std::map<uint32_t, LensFreed
 
 void WriteValues(const Bundle& bundle, const BundleValues& values, SparseModel* model) {
   for (size_t i = 0; i < bundle.NumPictures(); ++i) {
+    if (bundle.holds_pose[i]) continue;
     Rigid3d& pose = model->images[bundle.image_idx[i]].cam_from_world;
     pose.rotation = Eigen::Quaterniond(values.poses[i].rotation).normalized();
     pose.translation = values.poses[i].translation;

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <vector>
 
 #include "colmap_seapoint/adjustment/equations/lens_jacobian.h"
@@ -52,6 +53,7 @@ struct BundleValues {
 struct Bundle {
   std::vector<BundleLens> lenses;
   std::vector<uint32_t> lens_of_picture;
+  std::vector<bool> holds_pose;  // of each picture: it stays where it is
   // Of each observation; those of a point stand together, in the order of the pictures.
   std::vector<Eigen::Vector2d> pixels;
   std::vector<uint32_t> picture_of, point_of;
@@ -73,12 +75,15 @@ struct Bundle {
 // The model's observations of points that lie before their cameras and are seen by two pictures or
 // more; the others would say nothing of the poses. Passed over are, further, pictures without a
 // camera or through an equirectangular one (it has no lens), features of points that the model does
-// not hold, and whatever is not finite. Lenses that `freedom` does not name are adjusted in full.
-Bundle MakeBundle(const SparseModel& model, const std::map<uint32_t, LensFreedom>& freedom);
+// not hold, and whatever is not finite. Lenses that `freedom` does not name are adjusted in full;
+// pictures of `held_images` (image_ids) keep their poses.
+Bundle MakeBundle(const SparseModel& model, const std::map<uint32_t, LensFreedom>& freedom,
+                  const std::set<uint32_t>& held_images = {});
 
 // The model's values, with tied focal lengths already equal.
 BundleValues ReadValues(const Bundle& bundle, const std::map<uint32_t, LensFreedom>& freedom,
                         const SparseModel& model);
+// Held poses are not touched.
 void WriteValues(const Bundle& bundle, const BundleValues& values, SparseModel* model);
 
 }  // namespace colmap_seapoint

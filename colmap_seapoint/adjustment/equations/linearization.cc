@@ -114,8 +114,10 @@ ObservationEquations EquationsOf(const Bundle& bundle, const BundleValues& value
   equations.cost = loss.Cost(s);
   equations.residual = weight * error;
   const Eigen::Matrix<double, 2, 3> by_point = weight * jacobian.by_point;
-  equations.by_pose.leftCols<3>() = -by_point * CrossMatrix(in_cam);
-  equations.by_pose.rightCols<3>() = by_point;
+  if (!bundle.holds_pose[picture]) {
+    equations.by_pose.leftCols<3>() = -by_point * CrossMatrix(in_cam);
+    equations.by_pose.rightCols<3>() = by_point;
+  }
   equations.by_point = by_point * pose.rotation;
   for (int k = 0; k < kMaxLensParams; ++k) {
     const int slot = lens.slots[static_cast<size_t>(k)];

@@ -1,0 +1,127 @@
+"""run_step.py STEP MISSION DIVE BINARY QUALITY DIGEST DEADLINE
+
+A step of a dive, coarse or full: its workspace, its log, its record, and the page over all. Whatever
+becomes of it, it ends well, since others are to follow; its record tells. At the deadline the
+program is stopped: what it has finished by then is kept, and the next run goes on from there.
+"""
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+
+import deadline as deadlines
+import dives
+import plan
+import reduced_pictures
+
+# What makes an answer coarse, beside smaller pictures and the quality "field". Measured on a demo
+# survey of 30 pictures and two AUV strips of 1.4 megapixels: a sixth of the full run's CPU time, and a
+# covered share, at four to five times the spacing, within 4 to 7 points of its.
+COARSE_OPTIONS = {
+    "SeaPointExtraction.min_num_features": "600",
+    "SeaPointExtraction.max_num_features": "800",
+    "PartialDensification.step": "2",
+}
+SECONDS_TO_END = 20  # of a program that was asked to
+
+
+def last_error(log_path):
+    """The last line of a log that begins with "error:", without that."""
+    found = ""
+    try:
+        with open(log_path, encoding="utf-8", errors="replace") as log:
+            for line in log:
+                if line.startswith("error:"):
+                    found = line[len("error:"):].strip()
+    except OSError:
+        pass
+    return found
+
+
+def coarse_command(mission, dive, binary, dive_digest):
+    command = plan.command_of(mission, dive, binary, "field")
+    images = reduced_pictures.folder_of(mission, dive, dive_digest)
+    command[command.index("--image_path") + 1] = images
+    command[command.index("--workspace_path") + 1] = dives.result_path(
+        mission, dive, dives.WORKSPACES["coarse"])
+    for name, value in COARSE_OPTIONS.items():
+        command += ["--" + name, value]
+    return command
+
+
+def run_until(command, log_path, deadline, environment):
+    """Exit code; None where it was stopped at the deadline."""
+    with open(log_path, "w", encoding="utf-8") as log:
+        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log,
+                                   stderr=subprocess.STDOUT, env=environment)
+        while process.poll() is None:
+            left = deadlines.seconds_left(deadline)
+            if left <= 0:
+                process.terminate()
+                try:
+                    process.wait(SECONDS_TO_END)
+                except subprocess.TimeoutExpired:
+                    process.kill()
+                    process.wait()
+                return None
+            try:
+                # Not longer: a clock that is set, or a machine that slept, is noticed.
+                process.wait(min(left, 1.0))
+            except subprocess.TimeoutExpired:
+                pass
+    return process.returncode
+
+
+def environment_of(step):
+    """The program learns from its own runs how fast the machine is: not from coarse ones."""
+    environment = dict(os.environ)
+    if step == "coarse":
+        environment["XDG_CACHE_HOME"] = os.path.join(os.path.dirname(plan.history_path()), "coarse")
+    return environment
+
+
+def run_program(step, mission, dive, binary, quality, dive_digest, deadline):
+    """Exit code, None where it was stopped; and what went wrong."""
+    log_path = dives.result_path(mission, dive, dives.LOGS[step])
+    os.makedirs(os.path.dirname(log_path), exist_ok=True)
+    try:
+        command = (coarse_command(mission, dive, binary, dive_digest) if step == "coarse"
+                   else plan.command_of(mission, dive, binary, quality))
+        exit_code = run_until(command, log_path, deadline, environment_of(step))
+    except OSError as error:
+        return 1, str(error)
+    if exit_code is None:
+        return None, f"stopped at {deadlines.clock(deadline)}, goes on with the same command"
+    if exit_code in (0, dives.INCOMPLETE):
+        return exit_code, ""
+    return exit_code, last_error(log_path) or f"ended with exit code {exit_code}"
+
+
+def run(step, mission, dive, binary, quality, dive_digest, deadline):
+    record = {"dive": dive, "digest": dive_digest, "program": dives.checksum(binary),
+              "quality": "coarse" if step == "coarse" else quality, "exit_code": None,
+              "seconds": None, "ended": 0, "error": "not begun by the deadline"}
+    if deadlines.seconds_left(deadline) > 0:
+        dives.say(mission, f"{dive}: {step} begun")
+        began = time.time()
+        record["exit_code"], record["error"] = run_program(
+            step, mission, dive, binary, quality, dive_digest, deadline)
+        record["seconds"] = round(time.time() - began, 1)
+        dives.say(mission, f"{dive}: {step} {record['error'] or 'done'} after {record['seconds']} s")
+    record["ended"] = int(time.time())
+    dives.write_whole(dives.result_path(mission, dive, dives.RECORDS[step]),
+                      json.dumps(record, indent=2) + "\n")
+    if not dives.has_failed(record):
+        if step == "coarse":
+            known = plan.estimate(mission, dive, binary, quality) or {}
+            plan.remember_coarse(record["seconds"] - known.get("intake_seconds", 0),
+                                 known.get("pictures", 0))
+        else:
+            shutil.rmtree(dives.result_path(mission, dive, "coarse"), ignore_errors=True)
+    dives.write_page(mission)
+
+
+if __name__ == "__main__":
+    run(*sys.argv[1:])

@@ -1,0 +1,149 @@
+"""deadline_test.py SOURCE_DIR: the parts of a mission that plan and judge, without any program."""
+import importlib
+import json
+import os
+import sys
+import tempfile
+import time
+import unittest
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(sys.argv.pop(1), "scripts", "mission"))
+deadline, dives, plan, reduced, run_step = (
+    importlib.import_module(name)
+    for name in ("deadline", "dives", "plan", "reduced_pictures", "run_step"))
+
+# Takes as many seconds as the dive has pictures; in full it does not end by itself.
+PROGRAM = """#!/bin/sh
+case "$*" in
+  *estimate_only*) n=$(ls "$3" | wc -l)
+    echo '{"seconds": '$n', "intake_seconds": 0, "pictures": '$n', "disk_bytes": 1}' ;;
+  *coarse/workspace*) mkdir -p "$5/report"; echo '3 of 3 pictures used' >"$5/report/summary.txt" ;;
+  *) exec sleep 60 ;;
+esac
+"""
+
+
+class Deadline(unittest.TestCase):
+    def test_hours_count_from_now(self):
+        left = deadline.seconds_left(deadline.after_hours(".5"))
+        self.assertTrue(1790 < left <= 1800)
+
+    def test_a_time_is_the_next_one(self):
+        now = time.mktime((2026, 7, 1, 22, 30, 0, 0, 0, -1))
+        def at(text):
+            return float(deadline.at_time(text, now).split()[1]) - now
+        self.assertEqual(at("23:15"), 45 * 60)
+        self.assertEqual(at("06:00"), 7.5 * 3600)
+        self.assertEqual(at("22:30"), 24 * 3600)
+        for bad in ("6", "24:00", "12:60", "noon", "-1:00"):
+            self.assertRaises(ValueError, deadline.at_time, bad, now)
+
+    def test_never(self):
+        self.assertEqual(deadline.seconds_left("never"), float("inf"))
+
+
+class Mission(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.mission = folder.name
+        os.makedirs(os.path.join(self.mission, "results"))
+        os.environ["XDG_CACHE_HOME"] = os.path.join(self.mission, "results", "cache")
+        self.binary = os.path.join(self.mission, "results", "program")
+        with open(self.binary, "w", encoding="utf-8") as file:
+            file.write(PROGRAM)
+        os.chmod(self.binary, 0o755)
+
+    def add(self, dive, count):
+        os.makedirs(os.path.join(self.mission, dive))
+        for i in range(count):
+            with open(os.path.join(self.mission, dive, f"{i}.jpg"), "w", encoding="utf-8") as file:
+                file.write(str(i))
+
+    def run_step(self, step, dive, when):
+        run_step.run(step, self.mission, dive, self.binary, "field",
+                     dives.digest(self.mission, dive), when)
+
+    def test_the_shortest_dive_is_first_and_what_is_done_needs_no_coarse_answer(self):
+        for dive, count in (("a", 3), ("b", 1), ("c", 2)):
+            self.add(dive, count)
+        self.assertEqual(plan.order(self.mission, "full", self.binary, "field"), ["b", "c", "a"])
+        record = {"digest": dives.digest(self.mission, "c"), "quality": "field", "exit_code": 3,
+                  "program": dives.checksum(self.binary)}
+        dives.write_whole(dives.result_path(self.mission, "c", "outcome.json"), json.dumps(record))
+        self.assertEqual(plan.order(self.mission, "coarse", self.binary, "field"), ["b", "a"])
+        self.assertEqual(plan.order(self.mission, "coarse", self.binary, "survey"), ["b", "c", "a"])
+
+    def test_a_program_is_stopped_at_the_deadline_and_the_coarse_answer_stands(self):
+        self.add("a", 3)
+        self.run_step("coarse", "a", deadline.after_hours(1))
+        self.assertEqual(dives.state(self.mission, "a"), ("coarse", "not begun"))
+        began = time.time()
+        self.run_step("full", "a", deadline.after_hours(1 / 3600))
+        self.assertTrue(0.9 < time.time() - began < 10)
+        what, reason = dives.state(self.mission, "a")
+        self.assertEqual(what, "coarse")
+        self.assertRegex(reason, "^stopped at ..:.., goes on with the same command$")
+        with open(os.path.join(self.mission, "results/mission.html"), encoding="utf-8") as page:
+            self.assertIn("Coarse answer.</span> 3 of 3 pictures used. In full: stopped at", page.read())
+        self.assertEqual(dives.summary(self.mission), 3)
+        # It is no failure, but will be tried again.
+        dives.forget_failed(self.mission)
+        self.assertIsNone(dives.outcome(self.mission, "a"))
+        self.assertEqual(dives.state(self.mission, "a"), ("coarse", "not begun"))
+
+    def test_what_the_deadline_leaves_is_not_begun(self):
+        self.add("a", 1)
+        self.run_step("full", "a", "after 0")
+        self.assertEqual(dives.state(self.mission, "a"), ("not begun", "not begun by the deadline"))
+        self.assertEqual(dives.summary(self.mission), 1)
+
+
+class ReducedPictures(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.mission = folder.name
+        self.images = os.path.join(self.mission, "a", "images")
+        os.makedirs(self.images)
+
+    def write(self, name, size):
+        from PIL import Image
+        exif = Image.Exif()
+        exif[0x010F] = "a maker"
+        Image.new("RGB", size, (9, 99, 49)).save(os.path.join(self.images, name), exif=exif)
+
+    def folder(self):
+        return reduced.folder_of(self.mission, "a", "digest")
+
+    def test_large_ones_become_smaller_and_keep_what_they_say(self):
+        from PIL import Image
+        self.write("large.jpg", (2000, 1500))
+        self.write("large.png", (1120, 560))
+        self.write("small.jpg", (500, 300))
+        with open(os.path.join(self.images, "bad.jpg"), "w", encoding="utf-8") as file:
+            file.write("x")
+        folder = self.folder()
+        self.assertNotEqual(folder, self.images)
+        with Image.open(os.path.join(folder, "large.jpg")) as picture:
+            self.assertEqual((picture.size, picture.format), ((560, 420), "JPEG"))
+            self.assertEqual(picture.getexif()[0x010F], "a maker")
+        with Image.open(os.path.join(folder, "large.png")) as picture:
+            self.assertEqual((picture.size, picture.format), ((560, 280), "PNG"))
+        for name in ("small.jpg", "bad.jpg"):
+            self.assertEqual(os.readlink(os.path.join(folder, name)), os.path.join(self.images, name))
+        before = os.stat(os.path.join(folder, "large.jpg")).st_mtime_ns
+        self.assertEqual(self.folder(), folder)
+        self.assertEqual(os.stat(os.path.join(folder, "large.jpg")).st_mtime_ns, before)
+
+    def test_pictures_stay_where_none_is_large_or_their_pixels_count(self):
+        self.write("small.jpg", (500, 300))
+        self.assertEqual(self.folder(), self.images)
+        self.write("large.jpg", (2000, 1500))
+        with open(os.path.join(self.mission, "a", "project.ini"), "w", encoding="utf-8") as file:
+            file.write("[ImageReader]\ncamera_params=1,2,3,4\n")
+        self.assertEqual(self.folder(), self.images)
+
+
+unittest.main()
