@@ -94,7 +94,7 @@ tidy_as_one() {  # FILE...
   printf "#include \"$PWD/%s\"\n" "$@" >"$pack/all.cc"
   local flags
   flags=$(for file in "$@"; do grep -F -- "-c $PWD/$file\"" $build/compile_commands.json; done |
-    sed 's/^ *"command": "[^ ]*c++ //; s/ -o .*//; s/-isystem /-isystem/g; s/ -Wshadow//' |
+    sed 's/^ *"command": "[^ ]*c++ //; s/ -o .*//; s/-isystem /-isystem/g; s/ -Wshadow//; s/-Winvalid-pch -include [^ ]*//' |
     tr ' ' '\n' | awk '!seen[$0]++' | tr '\n' ' ')
   printf '[{"directory": "%s", "file": "%s", "command": "c++ %s -c %s"}]\n' \
     "$PWD/$build" "$pack/all.cc" "$flags" "$pack/all.cc" >"$pack/compile_commands.json"

@@ -1,6 +1,7 @@
 #include "colmap_seapoint/gaps/answer_line.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "colmap_seapoint/gaps/gap_colors.h"
@@ -15,9 +16,17 @@ std::string Formatted(const char* format, Values... values) {
   return text;
 }
 
+// To so many digits that count, and never with an exponent: 3900, 1.4, 0.0032.
+std::string Rounded(double value, int digits) {
+  if (!(value > 0)) return "0";
+  const int last = static_cast<int>(std::floor(std::log10(value))) - digits + 1;
+  const double step = std::pow(10, last);
+  return Formatted("%.*f", std::max(0, -last), step * std::round(value / step));
+}
+
 std::string SpacingText(double spacing, const GapPlaces& places) {
-  if (places.Unit() != "m") return Formatted("%.3g ", spacing) + places.Unit();
-  return spacing < 0.01 ? Formatted("%.2g mm", 1e3 * spacing) : Formatted("%.2g cm", 1e2 * spacing);
+  if (places.Unit() != "m") return Rounded(spacing, 3) + " " + places.Unit();
+  return spacing < 0.01 ? Rounded(1e3 * spacing, 2) + " mm" : Rounded(1e2 * spacing, 2) + " cm";
 }
 
 }  // namespace
@@ -35,12 +44,12 @@ std::string CompletenessLine(const CompletenessResult& result, const SparseModel
   const std::string unit = places.Unit() == "m" ? "m2" : "square units";
   line += std::to_string(result.gaps.size()) +
           (result.gaps.size() == 1 ? " gap, " : " gaps, the largest ") +
-          Formatted("%.2g ", largest.region.area) + unit;
+          Rounded(largest.region.area, 2) + " " + unit;
   if (!largest.pictures.empty()) {
     line += " near " + model.images[static_cast<size_t>(largest.pictures[0])].name;
   }
-  return line + ": " + CauseText(largest.region.cause) +
-         Formatted("; a route of %.3g ", result.route_length) + places.Unit() + " closes them";
+  return line + ": " + CauseText(largest.region.cause) + "; a route of " +
+         Rounded(result.route_length, 3) + " " + places.Unit() + " closes them";
 }
 
 }  // namespace colmap_seapoint

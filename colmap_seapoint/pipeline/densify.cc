@@ -314,7 +314,7 @@ RunReport DensifyModel(const PartialDensifierOptions& options, ColmapDatabase* d
     CloudWriter cloud(output / "fused.ply");
     const SequenceScope scope = ScopeOf(options, earlier, model, &cloud);
     const std::string rows =
-        earlier.num_pictures > 0 ? ReadPairRows(output / "pairs.csv") : std::string();
+        earlier.num_pictures > 0 ? RowsOfPairsCsv(output / "pairs.csv") : std::string();
     sequence = Densify(options, model, rig, scope, &pictures, &cloud, maps.get());
     report.inputs = DescribeModelInputs(pictures, model.images.size(), options.input_path,
                                         options.run.num_threads);

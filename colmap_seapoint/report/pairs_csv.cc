@@ -47,7 +47,7 @@ void WritePairsCsv(const std::filesystem::path& path, const SparseModel& model,
   WriteTextFile(path, out.str());
 }
 
-std::string ReadPairRows(const std::filesystem::path& path) {
+std::string RowsOfPairsCsv(const std::filesystem::path& path) {
   InputStream file(path);
   std::string header;
   std::getline(file, header);

@@ -17,6 +17,6 @@ void WritePairsCsv(const std::filesystem::path& path, const SparseModel& model,
                    const SequenceReport& report, const std::string& earlier_rows = "");
 
 // All rows of such a file, without its header. Throws Error when it cannot be read.
-std::string ReadPairRows(const std::filesystem::path& path);
+std::string RowsOfPairsCsv(const std::filesystem::path& path);
 
 }  // namespace colmap_seapoint
