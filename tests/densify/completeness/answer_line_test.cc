@@ -8,7 +8,6 @@ namespace {
 std::string LineOf(double spacing, double area, double route, bool is_metric) {
   CompletenessResult result;
   result.spacing = spacing;
-  result.coverage.push_back({});
   result.coverage[0].share = 0.327;
   result.share_tolerance = 0.005;
   result.route_length = route;
