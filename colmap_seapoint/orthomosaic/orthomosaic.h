@@ -30,7 +30,7 @@ struct OrthomosaicOptions {
   bool balance = true;    // one brightness and colour for all pictures
   bool restore = false;   // colours without the water, where the survey tells it; for the eye only
   int num_threads = -1;   // -1 = all; never changes a result
-  size_t picture_bytes = size_t{180} << 20;  // of decoded pictures that are kept
+  size_t picture_bytes = size_t{256} << 20;  // of decoded pictures that are kept
 };
 
 struct OrthomosaicInputs {
