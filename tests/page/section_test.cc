@@ -61,6 +61,12 @@ TEST_F(SectionOfASurvey, HoldsWhatThePageShows) {
       }
     }
     EXPECT_EQ(written.at("pass").at("corners").size(), gap.pass.corners.size());
+    // The number on the map lies in its gap, whatever its shape.
+    AskedArea area;
+    area.rings = gap.region.rings;
+    const Json& mark = written.at("middle");
+    EXPECT_TRUE(gap.region.layer.side != Side::kTop ||
+                area.Contains({mark[0].get<double>(), mark[1].get<double>()}));
   }
   EXPECT_EQ(json.at("route").size(), result_.route.size());
   EXPECT_EQ(json.at("track").at("pictures").size(), model_.images.size());

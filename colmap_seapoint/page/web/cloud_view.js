@@ -185,6 +185,10 @@ const startCloud = async (section, canvas, choices) => {
   redraw();
 };
 
+// A browser may need a second to begin with 3D, and shows nothing else meanwhile: the map comes first.
+const afterFirstPaint = new Promise((resolve) => requestAnimationFrame(() =>
+  requestAnimationFrame(() => setTimeout(resolve, 60))));
+
 const makeCloud = (section) => {
   if (!section.cloud || section.cloud.count === 0) {
     return make('p', { class: 'note' }, section.cloud ? 'There is no cloud to show.' :
@@ -197,7 +201,7 @@ const makeCloud = (section) => {
   const watch = new IntersectionObserver((entries) => {
     if (!entries.some((entry) => entry.isIntersecting)) return;
     watch.disconnect();
-    startCloud(section, canvas, choices).catch(fail);
+    afterFirstPaint.then(() => startCloud(section, canvas, choices)).catch(fail);
   }, { rootMargin: '1500px' });
   watch.observe(canvas);
   return make('figure', { class: 'cloud' }, choices, canvas, note, make('figcaption', {},
