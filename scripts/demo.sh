@@ -61,5 +61,5 @@ for dense in "$workspace"/dense/*/; do
   echo "cloud:   ${dense}fused.ply   (open it in CloudCompare or MeshLab)"
   echo "picture: ${dense}fused.png   (seen from above: colours, and heights)"
 done
-echo "report:  $workspace/report"
+echo "report:  $workspace/report/index.html   (open it in a browser)"
 exit "$status"

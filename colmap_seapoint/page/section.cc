@@ -1,6 +1,7 @@
 #include "colmap_seapoint/page/section.h"
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "colmap_seapoint/gaps/gap_colors.h"
@@ -150,6 +151,22 @@ Json PassJson(const ClosingPass& pass, const PlanWriter& plan) {
           {"length", plan.Number(pass.length)}};
 }
 
+// The middle of the gap's cell that is nearest to its centroid, which may lie outside of the gap.
+Eigen::Vector3d MarkOf(const Gap& gap, const Ground& ground) {
+  const GroundLayer& layer = ground.layers.at(gap.region.layer);
+  const Eigen::Vector3d centroid = layer.layer_from_world * gap.centroid;
+  Eigen::Vector3d nearest = gap.centroid;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [x, y] : gap.region.cells) {
+    const Eigen::Vector3d place = ground.PlaceOf(layer, x, y, centroid.z());
+    const double distance = (place - gap.centroid).squaredNorm();
+    if (distance >= least) continue;
+    least = distance;
+    nearest = place;
+  }
+  return nearest;
+}
+
 Json GapJson(const SectionInput& input, size_t index, const PlanWriter& plan) {
   const Gap& gap = input.result->gaps[index];
   Json outline = Json::array(), names = Json::array(), pictures = Json::array();
@@ -167,7 +184,7 @@ Json GapJson(const SectionInput& input, size_t index, const PlanWriter& plan) {
           {"cause", GapCauseName(gap.region.cause)},
           {"layer", LayerName(gap.region.layer)},
           {"area", gap.region.area},
-          {"middle", plan.Place(gap.centroid)},
+          {"middle", plan.Place(MarkOf(gap, input.result->ground))},
           {"place", input.places->IsGeographic()
                         ? Format("%.7f, %.7f, %.2f", place.y(), place.x(), place.z())
                         : Format("%.4g, %.4g, %.4g", place.x(), place.y(), place.z())},

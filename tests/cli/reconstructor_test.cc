@@ -46,13 +46,26 @@ class Reconstructor : public testing::Test {
 TEST_F(Reconstructor, RunsTheWholeChain) {
   const CliResult result = Reconstruct("model");
   ASSERT_EQ(result.exit_code, 0) << result.Text();
-  for (const char* file :
-       {"database.db", "sparse/0/images.bin", "dense/0/fused.ply", "dense/0/fused.ply.vis",
-        "dense/0/pairs.csv", "dense/0/run.json", "map/0/orthomosaic.tif", "map/0/dem.tif",
-        "map/0/source.tif", "map/0/hillshade.png", "map/0/orthomosaic.jpg", "map/0/map.json",
-        "report/summary.txt", "report/run.json", "report/completeness/0/completeness.json",
-        "report/completeness/0/gaps.geojson", "report/completeness/0/map.png",
-        "report/mapper_1_thinned.log"}) {
+  for (const char* file : {"database.db",
+                           "sparse/0/images.bin",
+                           "dense/0/fused.ply",
+                           "dense/0/fused.ply.vis",
+                           "dense/0/pairs.csv",
+                           "dense/0/run.json",
+                           "map/0/orthomosaic.tif",
+                           "map/0/dem.tif",
+                           "map/0/source.tif",
+                           "map/0/hillshade.png",
+                           "map/0/orthomosaic.jpg",
+                           "map/0/map.json",
+                           "report/summary.txt",
+                           "report/run.json",
+                           "report/index.html",
+                           "report/completeness/0/index.html",
+                           "report/completeness/0/completeness.json",
+                           "report/completeness/0/gaps.geojson",
+                           "report/completeness/0/map.png",
+                           "report/mapper_1_thinned.log"}) {
     EXPECT_TRUE(fs::exists(Workspace() / file)) << file;
   }
   EXPECT_FALSE(fs::exists(Workspace() / "sparse.tmp"));

@@ -12,7 +12,9 @@ namespace {
 
 class GroundMapsOfASurvey : public testing::Test {
  protected:
-  static bool Keep(const Eigen::Vector2d& p) { return (p - Eigen::Vector2d(1.6, 2.4)).norm() > 0.8; }
+  static bool Keep(const Eigen::Vector2d& p) {
+    return (p - Eigen::Vector2d(1.6, 2.4)).norm() > 0.8;
+  }
   const SparseModel model_ = MakeFlatSurvey({2, 4, 1.6, 3.2});
   const CompletenessResult result_ = AssessCompleteness(FlatInput(model_, Keep), {}, 2);
   const GroundMaps maps_ = DrawGroundMaps(result_, "units");

@@ -13,7 +13,9 @@ using Json = nlohmann::json;
 
 class SectionOfASurvey : public testing::Test {
  protected:
-  static bool Keep(const Eigen::Vector2d& p) { return (p - Eigen::Vector2d(1.6, 2.4)).norm() > 0.8; }
+  static bool Keep(const Eigen::Vector2d& p) {
+    return (p - Eigen::Vector2d(1.6, 2.4)).norm() > 0.8;
+  }
   const SparseModel model_ = MakeFlatSurvey({2, 4, 1.6, 3.2});
   const CompletenessResult result_ = AssessCompleteness(FlatInput(model_, Keep), {}, 2);
 
@@ -59,6 +61,12 @@ TEST_F(SectionOfASurvey, HoldsWhatThePageShows) {
       }
     }
     EXPECT_EQ(written.at("pass").at("corners").size(), gap.pass.corners.size());
+    // The number on the map lies in its gap, whatever its shape.
+    AskedArea area;
+    area.rings = gap.region.rings;
+    const Json& mark = written.at("middle");
+    EXPECT_TRUE(gap.region.layer.side != Side::kTop ||
+                area.Contains({mark[0].get<double>(), mark[1].get<double>()}));
   }
   EXPECT_EQ(json.at("route").size(), result_.route.size());
   EXPECT_EQ(json.at("track").at("pictures").size(), model_.images.size());

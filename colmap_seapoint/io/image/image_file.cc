@@ -329,7 +329,7 @@ ColorImage ReadColorImage(const std::filesystem::path& path) {
 }
 
 std::vector<uint8_t> EncodePng(const Image<uint8_t>& image) {
-  return Encode(image, ".png", {cv::IMWRITE_PNG_COMPRESSION, 9});
+  return Encode(image, ".png", {cv::IMWRITE_PNG_COMPRESSION, 6});
 }
 
 std::vector<uint8_t> EncodeJpeg(const Image<uint8_t>& image, int quality) {

@@ -9,12 +9,31 @@ const loadThree = () => {
   return threeModule;
 };
 
-const lineObject = (three, corners, color, isLoop, low) => {
+const routeObject = (three, corners, low) => {
   const geometry = new three.BufferGeometry();
   geometry.setAttribute('position', new three.Float32BufferAttribute(
     corners.flatMap((p) => p.map((v, axis) => v - low[axis])), 3));
-  const material = new three.LineBasicMaterial({ color });
-  return isLoop ? new three.LineLoop(geometry, material) : new three.Line(geometry, material);
+  return new three.Line(geometry, new three.LineBasicMaterial({ color: '#ffe600' }));
+};
+
+// All outlines as one object: a gap may be of a thousand pieces.
+const outlinesObject = (three, section, low) => {
+  const places = [], colors = [];
+  for (const gap of section.gaps) {
+    const color = new three.Color().setStyle(section.causes[gap.cause].color, three.LinearSRGBColorSpace).toArray();
+    for (const ring of gap.outline) {
+      ring.forEach((corner, k) => {
+        for (const [x, y, z] of [corner, ring[(k + 1) % ring.length]]) {
+          places.push(x - low[0], y - low[1], z - low[2]);
+          colors.push(...color);
+        }
+      });
+    }
+  }
+  const geometry = new three.BufferGeometry();
+  geometry.setAttribute('position', new three.Float32BufferAttribute(places, 3));
+  geometry.setAttribute('color', new three.Float32BufferAttribute(colors, 3));
+  return new three.LineSegments(geometry, new three.LineBasicMaterial({ vertexColors: true }));
 };
 
 // Four edges from each camera's centre, `size` long.
@@ -62,20 +81,17 @@ const buildScene = (three, section, cloud, extent) => {
   const points = new three.Points(geometry, new three.PointsMaterial({ vertexColors: true, sizeAttenuation: true,
     size: 2.2 * extent.radius / Math.sqrt(section.cloud.count) }));
   const gaps = new three.Group(), numbers = new three.Group();
-  for (const gap of section.gaps) {
-    for (const ring of gap.outline) gaps.add(lineObject(three, ring, section.causes[gap.cause].color, true, cloud.low));
-  }
   for (const gap of [...section.gaps].sort((a, b) => b.area - a.area).slice(0, numberedGaps)) {
     const sprite = numberSprite(three, String(gap.id));
     sprite.position.set(...gap.middle.map((v, axis) => v - cloud.low[axis]));
     sprite.scale.setScalar(0.045);
     numbers.add(sprite);
   }
-  gaps.add(numbers);
+  gaps.add(outlinesObject(three, section, cloud.low), numbers);
   const cameras = camerasObject(three, section.track.pictures, 0.02 * extent.radius, cloud.low);
   const corners = routeCorners(section);
   const route = new three.Group();
-  if (corners.length > 1) route.add(lineObject(three, corners, '#ffe600', false, cloud.low));
+  if (corners.length > 1) route.add(routeObject(three, corners, cloud.low));
   scene.add(points, gaps, cameras, route);
   return { scene, parts: { points, gaps, cameras, route } };
 };
@@ -185,6 +201,10 @@ const startCloud = async (section, canvas, choices) => {
   redraw();
 };
 
+// A browser may need a second to begin with 3D, and shows nothing else meanwhile: the map comes first.
+const afterFirstPaint = new Promise((resolve) => requestAnimationFrame(() =>
+  requestAnimationFrame(() => setTimeout(resolve, 60))));
+
 const makeCloud = (section) => {
   if (!section.cloud || section.cloud.count === 0) {
     return make('p', { class: 'note' }, section.cloud ? 'There is no cloud to show.' :
@@ -197,7 +217,7 @@ const makeCloud = (section) => {
   const watch = new IntersectionObserver((entries) => {
     if (!entries.some((entry) => entry.isIntersecting)) return;
     watch.disconnect();
-    startCloud(section, canvas, choices).catch(fail);
+    afterFirstPaint.then(() => startCloud(section, canvas, choices)).catch(fail);
   }, { rootMargin: '1500px' });
   watch.observe(canvas);
   return make('figure', { class: 'cloud' }, choices, canvas, note, make('figcaption', {},

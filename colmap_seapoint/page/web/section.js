@@ -67,7 +67,7 @@ const makeSection = (section) => {
     section.gaps.length > 0 && make('p', { class: 'note' }, 'The most area for a way first. The map shows the route when asked to.'),
     slate && make('p', { class: 'tools' }, make('button', { type: 'button', class: 'main', onclick: () => printSlate(slate) }, 'Print the diver\'s slate (A4)')),
     section.gaps.length > 0 && makeGaps(section, map),
-    make('h3', {}, 'In three dimensions'), makeCloud(section),
+    make('h3', { class: 'on-screen' }, 'In three dimensions'), makeCloud(section),
     make('h3', {}, 'The track'), makeTrack(section), lostList(section), otherLayers(section),
     make('h3', {}, 'In figures'), coverageTable(section), missingTable(section), make('p', {}, qualityText(section)),
     make('p', { class: 'note' }, `Coordinates: ${section.frame}.`), slate]);

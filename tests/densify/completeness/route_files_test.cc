@@ -16,7 +16,9 @@ using Json = nlohmann::json;
 // A survey at sea, its seabed 20 m down, its pictures from 15 m down; or on land, 100 m up.
 class RouteFiles : public testing::Test {
  protected:
-  static bool Keep(const Eigen::Vector2d& p) { return (p - Eigen::Vector2d(1.6, 2.4)).norm() > 0.8; }
+  static bool Keep(const Eigen::Vector2d& p) {
+    return (p - Eigen::Vector2d(1.6, 2.4)).norm() > 0.8;
+  }
   static ModelUnits Units(double up) {
     ModelUnits units;
     units.is_metric = true;

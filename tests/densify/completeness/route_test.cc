@@ -53,6 +53,41 @@ TEST(PlanRoute, ShortestOfAll) {
   }
 }
 
+// The shortest of all by Held and Karp, written down backwards: what is left to do from each state.
+double ShortestFrom(const std::vector<ClosingPass>& passes, size_t done, size_t state,
+                    std::vector<double>* known) {
+  const size_t n = passes.size();
+  if (done + 1 == size_t{1} << n) return 0;
+  double& best = (*known)[done * 2 * n + state];
+  if (best >= 0) return best;
+  best = std::numeric_limits<double>::infinity();
+  const auto stop = [](size_t s) { return RouteStop{static_cast<int>(s / 2), s % 2 == 1}; };
+  double shortest = best;
+  for (size_t next = 0; next < 2 * n; ++next) {
+    if (done >> (next / 2) & 1) continue;
+    shortest =
+        std::min(shortest, TransitLength(passes, {stop(state), stop(next)}) +
+                               ShortestFrom(passes, done | size_t{1} << (next / 2), next, known));
+  }
+  return (*known)[done * 2 * n + state] = shortest;
+}
+
+TEST(PlanRoute, MorePassesThanAreTriedInEveryOrder) {
+  constexpr size_t kPasses = 10;
+  for (uint32_t seed = 1; seed < 9; ++seed) {
+    const auto passes = RandomPasses(kPasses, seed);
+    std::vector<double> known((size_t{1} << kPasses) * 2 * kPasses, -1);
+    double shortest = std::numeric_limits<double>::infinity();
+    for (size_t s = 0; s < 2 * kPasses; ++s) {
+      shortest = std::min(shortest, ShortestFrom(passes, size_t{1} << (s / 2), s, &known));
+    }
+    const auto route = PlanRoute(passes);
+    ASSERT_TRUE(HoldsAll(route, kPasses));
+    EXPECT_LE(TransitLength(passes, route), 1.3 * shortest + 1e-9) << seed;
+    EXPECT_GE(TransitLength(passes, route), shortest - 1e-9) << seed;
+  }
+}
+
 TEST(PlanRoute, ManyPassesOnALine) {
   // The shortest way is known: along the line.
   std::vector<ClosingPass> passes(60);
