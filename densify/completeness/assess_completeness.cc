@@ -232,7 +232,7 @@ CompletenessResult AssessCompleteness(const CompletenessInput& input,
   JudgeGround(context, {options.spacing > 0 ? 0 : step, asked}, num_threads, &ground);
   LeaveOutBackground(result.gsd, &ground);
   TellWhatLacksTexture(&ground);
-  JudgeUnseen(kOutlineRadius * plan.across, asked, lost, &ground);
+  JudgeUnseen({kOutlineRadius * plan.across, kFar * result.gsd}, asked, lost, &ground);
   FillRecords(context, ground, num_threads, &result.records);
 
   Measure(&result);

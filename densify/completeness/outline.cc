@@ -6,11 +6,14 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "densify/completeness/judge_ground.h"
+
 namespace colmap_seapoint {
 namespace {
 
 constexpr int kMinBlock = 4;             // cells
-constexpr double kBlocksARadius = 24;    // the disc is drawn that finely
+constexpr double kBlocksARadius = 48;    // the disc is drawn that finely
+constexpr double kNotch = 0.2;           // of the radius: narrower is no bay of the outline
 constexpr int64_t kMaxBlocks = 1 << 24;  // of the box around all; larger boxes get larger blocks
 
 struct CellBox {
@@ -36,16 +39,28 @@ struct Blocks {
   }
 };
 
-CellBox ExpectedBox(TiledGrid<GroundCell>* cells) {
-  CellBox box;
+// Calls visit(x, y) for all that is expected but for what is covered from so far away that it is
+// background: nobody meant to measure between patches of that. Of covered cells distances are known
+// of a sample.
+template <typename Visitor>
+void ForEachMeant(double max_gsd, TiledGrid<GroundCell>* cells, const Visitor& visit) {
   cells->ForEach([&](int x, int y, const GroundCell& cell) {
-    if (cell.is_expected) box.Take(x, y);
+    if (!cell.is_expected) return;
+    const GroundCell* sample = cells->Find(SampledCellOf(x), SampledCellOf(y));
+    const float gsd = cell.gsd > 0 || sample == nullptr ? cell.gsd : sample->gsd;
+    if (gsd <= max_gsd) visit(x, y);
   });
+}
+
+CellBox MeantBox(double max_gsd, TiledGrid<GroundCell>* cells) {
+  CellBox box;
+  ForEachMeant(max_gsd, cells, [&](int x, int y) { box.Take(x, y); });
   return box;
 }
 
-// Blocks of which half is expected, with a margin all round.
-Blocks ExpectedBlocks(const CellBox& box, double radius_cells, TiledGrid<GroundCell>* cells) {
+// Blocks of which half was meant, with a margin all round.
+Blocks MeantBlocks(const CellBox& box, double radius_cells, double max_gsd,
+                   TiledGrid<GroundCell>* cells) {
   Blocks blocks;
   blocks.size = std::max(kMinBlock, static_cast<int>(radius_cells / kBlocksARadius));
   const auto num_blocks = [&] {
@@ -57,12 +72,18 @@ Blocks ExpectedBlocks(const CellBox& box, double radius_cells, TiledGrid<GroundC
   blocks.y0 = box.y0 - margin * blocks.size;
   cv::Mat count((box.y1 - blocks.y0) / blocks.size + margin + 1,
                 (box.x1 - blocks.x0) / blocks.size + margin + 1, CV_32S, cv::Scalar(0));
-  cells->ForEach([&](int x, int y, const GroundCell& cell) {
-    if (!cell.is_expected) return;
+  ForEachMeant(max_gsd, cells, [&](int x, int y) {
     ++count.at<int>((y - blocks.y0) / blocks.size, (x - blocks.x0) / blocks.size);
   });
   blocks.inside = count * 2 >= blocks.size * blocks.size;
   return blocks;
+}
+
+// What no way from outside leads to, be it as narrow as it may.
+cv::Mat Holes(const cv::Mat& inside) {
+  cv::Mat outside = ~inside;  // with a margin all round: all that is outside hangs together there
+  cv::floodFill(outside, cv::Point(0, 0), 0, nullptr, 0, 0, 4);
+  return outside;
 }
 
 void Close(double radius_blocks, cv::Mat* inside) {
@@ -71,9 +92,11 @@ void Close(double radius_blocks, cv::Mat* inside) {
   cv::Mat grown = distance <= radius_blocks;
   cv::distanceTransform(grown, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
   cv::Mat added = (distance > radius_blocks) & ~*inside;
-  // What is added no wider than two blocks comes from the blocks' steps.
+  // Between the corners of pictures lie notches that are no holes.
+  const int notch = 2 * static_cast<int>(kNotch * radius_blocks / 2) + 1;
   cv::morphologyEx(added, added, cv::MORPH_OPEN,
-                   cv::getStructuringElement(cv::MORPH_RECT, cv::Size(3, 3)));
+                   cv::getStructuringElement(cv::MORPH_RECT, cv::Size(notch, notch)));
+  added |= Holes(*inside);
   // The outermost blocks are expected in part: beyond is no hole.
   *inside |= added;
   cv::erode(*inside, *inside, cv::Mat(), cv::Point(-1, -1), 1, cv::BORDER_CONSTANT, 0);
@@ -120,16 +143,17 @@ void MakeTiles(const Blocks& blocks, TiledGrid<GroundCell>* cells) {
 
 }  // namespace
 
-void JudgeUnseen(double radius, const AskedArea* asked, const LostSight& lost, Ground* ground) {
+void JudgeUnseen(const OutlineLimits& limits, const AskedArea* asked, const LostSight& lost,
+                 Ground* ground) {
   GroundLayer& top = ground->LayerAt({Side::kTop, 0});
-  const CellBox box = ExpectedBox(&top.cells);
+  const CellBox box = MeantBox(limits.max_gsd, &top.cells);
   if (asked == nullptr && box.IsEmpty()) return;
-  const double radius_cells = radius / ground->cell_side;
+  const double radius_cells = limits.radius / ground->cell_side;
   Blocks blocks;
   if (asked != nullptr) {
     blocks = AskedBlocks(*ground, *asked);
   } else {
-    blocks = ExpectedBlocks(box, radius_cells, &top.cells);
+    blocks = MeantBlocks(box, radius_cells, limits.max_gsd, &top.cells);
     Close(radius_cells / blocks.size, &blocks.inside);
   }
   MakeTiles(blocks, &top.cells);

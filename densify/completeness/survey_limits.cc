@@ -2,21 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 
 #include "densify/completeness/judge_ground.h"
 
 namespace colmap_seapoint {
 namespace {
 
-constexpr double kBinRatio = 1.1;  // from one bin of GSD to the next
-constexpr int kNumBins = 64;
-constexpr int kFirstFar = 5;  // the bin of 1.5 times the survey's GSD
-constexpr int kWindow = 3;    // bins that are looked at together
-constexpr double kMostlyNothing = 0.5;
-constexpr double kMinAreaShare = 0.005;  // of all, in a window: less tells nothing
-constexpr double kFarForOne = 2;         // of the survey's GSD
 constexpr double kAsGood = 0.9, kOfMedian = 0.25;
 constexpr int kTextureReach = 2;  // both ways, of the textures that are looked at together
 constexpr double kFew = 0.002;    // of all
@@ -39,18 +30,6 @@ void ForEachPairCell(const GroundLayer& layer, const Visitor& visit) {
   });
 }
 
-// By GSD: bin 0 holds all up to the survey's own.
-std::array<Bin, kNumBins> CoverageByGsd(double survey_gsd, const GroundLayer& top) {
-  std::array<Bin, kNumBins> bins;
-  ForEachPairCell(top, [&](const GroundCell& cell, double area) {
-    const double at = std::ceil(std::log(cell.gsd / survey_gsd) / std::log(kBinRatio));
-    Bin& bin = bins[static_cast<size_t>(std::clamp(at, 0.0, kNumBins - 1.0))];
-    bin.all += area;
-    bin.covered += cell.is_covered ? area : 0;
-  });
-  return bins;
-}
-
 using TextureBins = std::array<Bin, 255>;
 
 TextureBins CoverageByTexture(const GroundLayer& top) {
@@ -64,8 +43,7 @@ TextureBins CoverageByTexture(const GroundLayer& top) {
   return bins;
 }
 
-template <typename Bins>
-Bin Sum(const Bins& bins, int from, int to) {
+Bin Sum(const TextureBins& bins, int from, int to) {
   Bin sum;
   for (int k = std::max(0, from); k < std::min(to, static_cast<int>(bins.size())); ++k) {
     sum.all += bins[static_cast<size_t>(k)].all;
@@ -87,28 +65,10 @@ int MedianCovered(const TextureBins& bins) {
 
 }  // namespace
 
-double LimitOfSight(double survey_gsd, const Ground& ground) {
-  const auto top = ground.layers.find({Side::kTop, 0});
-  if (top == ground.layers.end()) return std::numeric_limits<double>::infinity();
-  const std::array<Bin, kNumBins> bins = CoverageByGsd(survey_gsd, top->second);
-  const double all = Sum(bins, 0, kNumBins).all;
-  for (int k = kFirstFar; k + kWindow <= kNumBins; ++k) {
-    const Bin window = Sum(bins, k, k + kWindow);
-    if (window.all < kMinAreaShare * all) continue;
-    if (window.Share() < kMostlyNothing * bins[0].Share()) {
-      return survey_gsd * std::pow(kBinRatio, k - 1);
-    }
-  }
-  return std::numeric_limits<double>::infinity();
-}
-
 void LeaveOutBackground(double survey_gsd, Ground* ground) {
-  const double limit = LimitOfSight(survey_gsd, *ground);
-  const double limit_for_one = std::min(limit, kFarForOne * survey_gsd);
   for (auto& [key, layer] : ground->layers) {
     layer.cells.ForEach([&](int, int, GroundCell& cell) {
-      if (cell.is_covered && !cell.is_from_afar) return;
-      if (cell.gsd > (cell.has_pair ? limit : limit_for_one)) cell.is_expected = false;
+      if (!cell.is_covered && cell.gsd > kFar * survey_gsd) cell.is_expected = false;
     });
   }
 }

@@ -18,6 +18,13 @@ const double kMinCosine = std::cos(80 / kDegPerRad);
 constexpr double kHiddenShare = 0.01, kHiddenCells = 3;
 
 constexpr double kMaxParallax = 0.2;  // radians
+// Pixels from a place to the edge of a picture that a window of correlation asks for.
+constexpr double kWindow = 12;
+
+bool IsAtEdge(const Camera& camera, const Eigen::Vector2d& pixel) {
+  return pixel.x() < kWindow || pixel.y() < kWindow || pixel.x() > camera.width - kWindow ||
+         pixel.y() > camera.height - kWindow;
+}
 
 SightKind KindOf(const SightContext& context, int image_idx, const Eigen::Vector2d& pixel,
                  double depth, double slack, uint8_t* texture) {
@@ -65,17 +72,23 @@ std::vector<Sight> SightsOf(const SightContext& context, const std::vector<int>&
     const SurveyView& view = (*context.views)[static_cast<size_t>(image_idx)];
     const Eigen::Vector3d to_camera = view.center - place;
     const double distance = to_camera.norm();
-    if (normal.dot(to_camera) < kMinCosine * distance * normal_length) continue;
     const auto pixel = view.Project(place);
     if (!pixel) continue;
     Sight sight;
     const double depth = view.rotation.row(2).dot(place) + view.translation.z();
-    const double cosine = normal.dot(to_camera) / (distance * normal_length);
+    const double facing = normal.dot(to_camera) / (distance * normal_length);
+    const double cosine = std::max(kMinCosine, facing);
     const double across = distance / view.camera->MeanFocal();
     // A cell of depths holds a piece of a tilted surface from its nearest to its farthest end.
     const double within_cell = kDepthCell * across * std::sqrt(1 - cosine * cosine) / cosine;
     const double slack = kHiddenShare * depth + kHiddenCells * context.cell_side + within_cell;
     sight.kind = KindOf(context, image_idx, *pixel, depth, slack, &sight.texture);
+    if (sight.kind != SightKind::kMasked) {
+      if (facing < kMinCosine) sight.kind = SightKind::kHidden;
+      if (sight.kind != SightKind::kHidden && IsAtEdge(*view.camera, *pixel)) {
+        sight.kind = SightKind::kEdge;
+      }
+    }
     sight.gsd = across / std::sqrt(cosine);
     sight.toward = to_camera / distance;
     sights.push_back(sight);
@@ -158,7 +171,9 @@ GapCause CauseOf(const SightContext& context, const std::vector<Sight>& sights,
   }
   if (has_masked && num_good < 2) return GapCause::kOutOfArea;
   if (num_good >= 2) return GapCause::kSmallParallax;
-  if (num_good + Count(sights, SightKind::kBad) >= 1) return GapCause::kImagedOnce;
+  if (num_good + Count(sights, SightKind::kBad) + Count(sights, SightKind::kEdge) >= 1) {
+    return GapCause::kImagedOnce;
+  }
   return has_hidden ? GapCause::kOccluded : GapCause::kNone;
 }
 

@@ -35,7 +35,7 @@ void DrawTile(const Ground& ground, const GroundLayer& layer, const TileKey& key
   const Eigen::Vector3d toward = layer.layer_from_world.row(2).transpose();
   for (int i = 0; i < kSide * kSide; ++i) {
     const GroundCell& cell = tile[static_cast<size_t>(i)];
-    if (cell.count == 0) continue;
+    if (!cell.is_coherent) continue;
     const Eigen::Vector3d place =
         ground.PlaceOf(layer, key.x * kSide + i % kSide, key.y * kSide + i / kSide, cell.height);
     // Seen from behind it is no surface.
@@ -127,7 +127,7 @@ std::vector<DepthCells> DrawDepths(const Ground& ground, const std::vector<Surve
     for (const TileKey& key : layer.cells.Keys()) {
       float low = std::numeric_limits<float>::infinity(), high = -low;
       for (const GroundCell& cell : layer.cells.ExistingTile(key)) {
-        if (cell.count == 0) continue;
+        if (!cell.is_coherent) continue;
         low = std::min(low, cell.height);
         high = std::max(high, cell.height);
       }

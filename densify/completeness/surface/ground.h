@@ -27,6 +27,7 @@ struct GroundCell {
   float gsd = 0;       // units a pixel on it, of the nearest picture
   float area = 0;      // units^2 of surface, along its slope
   uint16_t count = 0;  // points of enough confidence
+  bool is_coherent = false;  // its points lie on one surface with those around
   bool is_covered = false;
   bool is_thin = false;       // not covered, yet with too many points to call it a gap
   bool is_from_afar = false;  // covered by what farther pictures than usual can give
@@ -84,7 +85,8 @@ void AddHint(const Eigen::Vector3d& xyz, Ground* ground);
 // Threads: any number, the same result.
 void FinishPoints(int num_threads, Ground* ground);
 
-// Height and area of a cell without points, from the predicted surface.
+// Area of a cell that is not covered, from the predicted surface, and its height, but where its own
+// points lie on one surface with their neighbours.
 void PredictCell(const Ground& ground, const GroundLayer& layer, int x, int y, GroundCell* cell);
 
 // Points of the (2 reach + 1)^2 cells around one.

@@ -16,8 +16,10 @@
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/image/image_file.h"
+#include "densify/completeness/completeness_options.h"
 #include "densify/completeness/surface/asked_area.h"
 #include "examples/benchmarks/completeness/gap_truth.h"
+#include "examples/benchmarks/completeness/peer_maps.h"
 #include "examples/subcommands.h"
 
 namespace colmap_seapoint {
@@ -116,7 +118,7 @@ int Cover(const std::vector<std::string>& arguments) {
 }
 
 struct ReportedGaps {
-  double spacing = 0, gsd = 0, covered_share = 0;
+  double spacing = 0, covered_share = 0, tolerance = 0;
   struct One {
     std::string cause;
     AskedArea area;
@@ -127,7 +129,8 @@ struct ReportedGaps {
 ReportedGaps ReadReported(const SurveyTruth& truth, const fs::path& path) {
   std::ifstream in(path / "completeness.json");
   const Json json = Json::parse(in);
-  ReportedGaps reported{json.at("spacing"), json.at("gsd"), json.at("covered_share"), {}};
+  ReportedGaps reported{
+      json.at("spacing"), json.at("covered_share"), json.at("covered_share_tolerance"), {}};
   for (const Json& gap : json.at("gaps")) {
     if (gap.at("layer") != "top") continue;
     ReportedGaps::One one{gap.at("cause"), {}};
@@ -268,17 +271,24 @@ int Score(const std::vector<std::string>& arguments) {
   const PlantedGaps planted = planted_path.empty()
                                   ? PlantedGaps()
                                   : ReadPlantedGaps(fs::path(planted_path) / "planted.json");
-  std::vector<Eigen::Vector3f> points;
-  for (const CloudPoint& p : ReadCloud(cloud_path)) points.push_back(p.xyz);
-  const GapTruth gaps = MeasureGapTruth(truth, planted, reported.spacing,
-                                        reported.spacing / reported.gsd, points, -1);
+  std::vector<Eigen::Vector3f> points, sure;
+  const CompletenessOptions defaults;
+  for (const CloudPoint& p : ReadCloud(cloud_path)) {
+    points.push_back(p.xyz);
+    if (p.confidence >= defaults.min_confidence) sure.push_back(p.xyz);
+  }
+  const GapTruth gaps = MeasureGapTruth(truth, planted, sure, -1);
   const std::vector<int> owner = OwnersOf(gaps, reported);
   if (!picture_path.empty()) DrawScore(gaps, owner, reported, picture_path);
   const Tallies tallies = TallyCells(gaps, owner, reported);
   PrintTallies(tallies);
-  std::printf("covered share: said %.2f %%, true %.2f %% (spacing %.3f gsd)\n",
-              100 * reported.covered_share, 100 * tallies.covered / tallies.expected,
-              reported.spacing / truth.gsd);
+  std::printf("falsely covered: ours %.3f m2, footprints %.3f m2, views of points %.3f m2\n",
+              tallies.all.truth - tallies.all.found,
+              FalselyCovered(gaps, FootprintMap(truth, planted, gaps)),
+              FalselyCovered(gaps, ViewsMap(truth, points, gaps)));
+  std::printf("covered share: said %.2f +- %.2f %%, true %.2f %% (spacing: said %.4f, true %.4f)\n",
+              100 * reported.covered_share, 100 * reported.tolerance,
+              100 * tallies.covered / tallies.expected, reported.spacing, gaps.spacing);
   return 0;
 }
 

@@ -16,6 +16,9 @@ struct TruthCell {
 };
 
 struct GapTruth {
+  // The survey's own: median over what its pictures can give, metres a pixel; and times the step of
+  // its samples.
+  double survey_gsd = 0, spacing = 0;
   double min_x = 0, min_y = 0, side = 1;  // of the cells; ground's plan, metres
   int nx = 0, ny = 0;
   std::vector<TruthCell> cells;  // row by row
@@ -29,13 +32,14 @@ struct GapTruth {
   }
 };
 
-// `truth`: all pictures of the survey; `points`: the cloud in its frame; `step`: pixels a point. A
-// place is covered when a point lies within two GSD (or one and a half spacings) of it: of those of
-// the two pictures that measure it best, where these are coarser than the survey's own. Expected is
-// what a picture sees that was taken, or would have been (the removed ones), but for background:
-// what no two see from two sides, and all see at twice the survey's own GSD or more, and what lies
-// beyond the limit of sight, as completeness_reporter defines it, by exact visibility.
-GapTruth MeasureGapTruth(const SurveyTruth& truth, const PlantedGaps& gaps, double spacing,
-                         double step, const std::vector<Eigen::Vector3f>& points, int num_threads);
+// By the exact surface and cameras alone; of completeness_reporter's answer nothing is known here.
+// `truth`: all pictures of the survey; `points`: the cloud's sure ones, in
+// its frame. A place is covered when a
+// point lies within two GSD (or one and a half spacings) of it: of the survey's own, or those of
+// the two pictures that measure it best where these are coarser. Expected is what is covered, and
+// what a picture that was taken, or would have been (the lost and the removed ones), holds at twice
+// the survey's own GSD or less; what all see from farther away is background.
+GapTruth MeasureGapTruth(const SurveyTruth& truth, const PlantedGaps& gaps,
+                         const std::vector<Eigen::Vector3f>& points, int num_threads);
 
 }  // namespace colmap_seapoint
