@@ -221,7 +221,7 @@ CompletenessResult AssessCompleteness(const CompletenessInput& input,
 
   const PassPlan plan = PlanLikeSurvey(views, ground, options);
   const std::vector<DepthCells> depths = DrawDepths(ground, views, num_threads);
-  result.lost_runs = FindLostRuns(NamesOf(model), input.lost);
+  result.lost_runs = FindLostRuns(NamesOf(model), input.lost, input.posed_elsewhere);
   const LostSight lost(result.lost_runs, views, plan.across);
   const SightContext context{&views, &depths,          &input.facts,
                              &lost,  ground.cell_side, options.min_parallax_deg};

@@ -49,8 +49,9 @@ struct CompletenessInput {
   uint64_t num_points = 0;
   // The plan for a sample of the cloud; empty: the world's own.
   std::function<PlanFrame(const std::vector<Eigen::Vector3d>&)> frame_of;
-  std::vector<PictureFacts> facts;    // by image_idx; Empty(): nobody has looked at it
-  std::vector<std::string> lost;      // names of pictures that are in no model
+  std::vector<PictureFacts> facts;           // by image_idx; Empty(): nobody has looked at it
+  std::vector<std::string> lost;             // names of pictures that are in no model
+  std::vector<std::string> posed_elsewhere;  // and of those that are in another one
   AskedArea asked;                    // in the map's plan; Empty(): the outline of what was imaged
   std::vector<FormerOutline> former;  // gaps of the report before, for their ids
   int last_id = 0;                    // the largest id ever given

@@ -28,14 +28,18 @@ struct CellBox {
   bool IsEmpty() const { return x0 > x1; }
 };
 
+// kBay: open to the outside, and yet within the outline.
+enum BlockPlace : uint8_t { kOutside = 0, kBay = 1, kInside = 255 };
+
 // Squares of `size` cells; block (0, 0) begins at cell (x0, y0).
 struct Blocks {
   int x0 = 0, y0 = 0, size = 1;
-  cv::Mat inside;  // 8 bit, 255 inside
+  cv::Mat inside;  // 8 bit, BlockPlace
 
-  bool Holds(int x, int y) const {
+  uint8_t PlaceOf(int x, int y) const {
     const int a = (x - x0) / size, b = (y - y0) / size;
-    return a >= 0 && b >= 0 && a < inside.cols && b < inside.rows && inside.at<uint8_t>(b, a) != 0;
+    const bool is_known = a >= 0 && b >= 0 && a < inside.cols && b < inside.rows;
+    return is_known ? inside.at<uint8_t>(b, a) : uint8_t{kOutside};
   }
 };
 
@@ -87,6 +91,7 @@ cv::Mat Holes(const cv::Mat& inside) {
 }
 
 void Close(double radius_blocks, cv::Mat* inside) {
+  const cv::Mat holes = Holes(*inside);
   cv::Mat distance;
   cv::distanceTransform(~*inside, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
   cv::Mat grown = distance <= radius_blocks;
@@ -96,11 +101,13 @@ void Close(double radius_blocks, cv::Mat* inside) {
   const int notch = 2 * static_cast<int>(kNotch * radius_blocks / 2) + 1;
   cv::morphologyEx(added, added, cv::MORPH_OPEN,
                    cv::getStructuringElement(cv::MORPH_RECT, cv::Size(notch, notch)));
-  added |= Holes(*inside);
+  const cv::Mat bays = added & ~holes;
+  added |= holes;
   // The outermost blocks are expected in part: beyond is no hole.
   *inside |= added;
   cv::erode(*inside, *inside, cv::Mat(), cv::Point(-1, -1), 1, cv::BORDER_CONSTANT, 0);
   *inside |= added;
+  inside->setTo(cv::Scalar(kBay), bays);
 }
 
 Blocks AskedBlocks(const Ground& ground, const AskedArea& asked) {
@@ -158,11 +165,14 @@ void JudgeUnseen(const OutlineLimits& limits, const AskedArea* asked, const Lost
   }
   MakeTiles(blocks, &top.cells);
   top.cells.ForEach([&](int x, int y, GroundCell& cell) {
-    if (cell.is_expected || cell.cause == GapCause::kOutOfArea || !blocks.Holds(x, y)) return;
+    if (cell.is_expected || cell.cause == GapCause::kOutOfArea) return;
+    const uint8_t at = blocks.PlaceOf(x, y);
+    const bool is_background = cell.cause != GapCause::kNone;
+    if (at == kOutside || (at == kBay && is_background)) return;
     const Eigen::Vector2d middle((x + 0.5) * ground->cell_side, (y + 0.5) * ground->cell_side);
     if (asked != nullptr && !asked->Contains(middle)) return;
     cell.is_expected = true;
-    if (cell.is_covered || cell.cause != GapCause::kNone) return;  // background
+    if (is_background) return;
     PredictCell(*ground, top, x, y, &cell);
     const bool is_lost = lost.RunThatSaw(ground->PlaceOf(top, x, y, cell.height)) >= 0;
     cell.cause = is_lost ? GapCause::kPoseLost : GapCause::kNeverImaged;

@@ -15,7 +15,7 @@ struct OutlineLimits {
 // The outline is the closing of what is expected of the top layer and seen from near enough: all
 // that a disc cannot reach from outside without touching it, and all that is enclosed. Cells inside
 // of it that no picture saw become expected: kPoseLost where lost pictures must have been, else
-// kNeverImaged; and so does background that lies inside. With an asked area its inside takes the
+// kNeverImaged; and so does background that is enclosed. With an asked area its inside takes the
 // outline's place. Cells that are not there yet are made.
 void JudgeUnseen(const OutlineLimits& limits, const AskedArea* asked, const LostSight& lost,
                  Ground* ground);

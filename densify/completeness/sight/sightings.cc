@@ -34,7 +34,7 @@ SightKind KindOf(const SightContext& context, int image_idx, const Eigen::Vector
   const uint8_t flags = facts.Empty() ? 0 : facts.flags[cell];
   *texture = facts.Empty() ? kUnknownTexture : facts.texture[cell];
   if (flags & kMaskedCell) return SightKind::kMasked;
-  if (IsHidden((*context.depths)[i], pixel, depth, slack)) return SightKind::kHidden;
+  if (ShowsAnother((*context.depths)[i], pixel, depth, slack)) return SightKind::kHidden;
   return facts.is_bad || (flags & kBadlyExposedCell) ? SightKind::kBad : SightKind::kGood;
 }
 
@@ -54,6 +54,7 @@ bool HasPair(const std::vector<Sight>& sights, double min_parallax_deg, const Is
   return false;
 }
 
+bool IsSharp(SightKind kind) { return kind == SightKind::kGood || kind == SightKind::kEdge; }
 bool IsGood(SightKind kind) { return kind == SightKind::kGood; }
 bool IsSeen(SightKind kind) { return kind == SightKind::kGood || kind == SightKind::kBad; }
 
@@ -78,7 +79,7 @@ std::vector<Sight> SightsOf(const SightContext& context, const std::vector<int>&
     const double depth = view.rotation.row(2).dot(place) + view.translation.z();
     const double facing = normal.dot(to_camera) / (distance * normal_length);
     const double cosine = std::max(kMinCosine, facing);
-    const double across = distance / view.camera->MeanFocal();
+    const double across = view.GsdAt(place);
     // A cell of depths holds a piece of a tilted surface from its nearest to its farthest end.
     const double within_cell = kDepthCell * across * std::sqrt(1 - cosine * cosine) / cosine;
     const double slack = kHiddenShare * depth + kHiddenCells * context.cell_side + within_cell;
@@ -114,7 +115,7 @@ std::optional<double> PairGsd(const std::vector<Sight>& sights, double min_paral
   double least = std::numeric_limits<double>::infinity(), gsd = 0;
   for (size_t k = 1; k < sights.size(); ++k) {
     for (size_t m = 0; m < k; ++m) {
-      if (sights[k].kind != SightKind::kGood || sights[m].kind != SightKind::kGood) continue;
+      if (!IsSharp(sights[k].kind) || !IsSharp(sights[m].kind)) continue;
       const double cosine = sights[m].toward.dot(sights[k].toward);
       if (cosine > max_cosine) continue;
       const double coarser = std::max(sights[k].gsd, sights[m].gsd);

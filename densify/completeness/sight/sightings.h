@@ -45,9 +45,9 @@ std::vector<Sight> SightsOf(const SightContext& context, const std::vector<int>&
 double ParallaxDeg(const std::vector<Sight>& sights);
 // Good ones.
 int NumGood(const std::vector<Sight>& sights);
-// GSD of the coarser one of the two good pictures that measure the place best: whose GSD over their
-// parallax, which counts up to 11.5 degrees as in densification, is the least. nullopt where no two
-// see it `min_parallax_deg` apart.
+// GSD of the coarser one of the two good pictures, be it at their edges, that measure the place
+// best: whose GSD over their parallax, which counts up to 11.5 degrees as in densification, is the
+// least. nullopt where no two see it `min_parallax_deg` apart.
 std::optional<double> PairGsd(const std::vector<Sight>& sights, double min_parallax_deg);
 // Of all but the masked ones; infinite for none.
 double NearestGsd(const std::vector<Sight>& sights);

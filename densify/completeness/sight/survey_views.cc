@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "colmap_seapoint/base/camera_projection.h"
 #include "colmap_seapoint/base/median.h"
 #include "colmap_seapoint/base/parallel.h"
 
@@ -71,6 +72,12 @@ std::optional<Eigen::Vector2d> SurveyView::Project(const Eigen::Vector3d& place)
   return pixel;
 }
 
+double SurveyView::GsdAt(const Eigen::Vector3d& place) const {
+  const double away =
+      is_fisheye ? (place - center).norm() : rotation.row(2).dot(place) + translation.z();
+  return away / camera->MeanFocal();
+}
+
 bool SurveyView::MaySee(const Eigen::Vector3d& middle, double radius) const {
   const Eigen::Vector3d in_cam = rotation * middle + translation;
   const double distance = in_cam.norm();
@@ -86,6 +93,7 @@ SurveyView MakeView(const Camera& camera, const Rigid3d& cam_from_world, double 
   view.rotation = cam_from_world.rotation.toRotationMatrix();
   view.translation = cam_from_world.translation;
   view.center = cam_from_world.OriginInSource();
+  view.is_fisheye = IsFisheye(camera.model) || camera.model == CameraModel::kEquirectangular;
   view.max_angle = MaxAngle(camera);
   view.max_range = max_range;
   return view;
@@ -152,11 +160,12 @@ std::vector<DepthCells> DrawDepths(const Ground& ground, const std::vector<Surve
   return depths;
 }
 
-bool IsHidden(const DepthCells& depths, const Eigen::Vector2d& pixel, double depth, double slack) {
+bool ShowsAnother(const DepthCells& depths, const Eigen::Vector2d& pixel, double depth,
+                  double slack) {
   const int x = std::clamp(static_cast<int>(pixel.x()) / kDepthCell, 0, depths.width - 1);
   const int y = std::clamp(static_cast<int>(pixel.y()) / kDepthCell, 0, depths.height - 1);
   const float nearest = depths.At(x, y);
-  return nearest > 0 && nearest < depth - slack;
+  return nearest > 0 && std::abs(nearest - depth) > slack;
 }
 
 }  // namespace colmap_seapoint

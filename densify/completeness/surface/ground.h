@@ -79,9 +79,9 @@ void AddPoint(const SurfacePoint& point, Ground* ground);
 void AddHint(const Eigen::Vector3d& xyz, Ground* ground);
 
 // To be called once, after all points: heights, areas and which cells are covered. A cell is
-// covered when it, or it and its neighbours together, hold 0.7 of the points that the spacing asks
+// covered when it, or it and its neighbours together, hold 0.6 of the points that the spacing asks
 // for on a surface of that slope (measured: so the share is that of the surface with a point within
-// two GSD); with half of them it is thin. Either needs neighbours that lie on one surface with it.
+// two GSD); with 0.43 of them it is thin. Either needs neighbours that lie on one surface with it.
 // Threads: any number, the same result.
 void FinishPoints(int num_threads, Ground* ground);
 
@@ -94,6 +94,6 @@ int CountAround(const GroundLayer& layer, int x, int y, int reach);
 
 // Points that the spacing asks for on an area.
 double WantedPoints(double area, double spacing);
-inline constexpr double kCoveredShare = 0.7, kThinShare = 0.5;
+inline constexpr double kCoveredShare = 0.6, kThinShare = 0.43;
 
 }  // namespace colmap_seapoint

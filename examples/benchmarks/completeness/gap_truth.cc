@@ -119,6 +119,11 @@ class CellTruth {
     if (Has(seen, Kind::kLost)) return GapCause::kPoseLost;
     return is_hidden ? GapCause::kOccluded : GapCause::kNeverImaged;
   }
+  bool IsPlantedAt(const Eigen::Vector2d& place) const {
+    const auto contains = [&](const Disc& disc) { return disc.Contains(place); };
+    return std::any_of(gaps_.smooth.begin(), gaps_.smooth.end(), contains) ||
+           std::any_of(gaps_.moving.begin(), gaps_.moving.end(), contains);
+  }
   static bool Has(const std::vector<Seen>& seen, Kind kind) {
     for (const Seen& s : seen) {
       if (s.kind == kind) return true;
@@ -141,8 +146,7 @@ class CellTruth {
 
 // Along the surface, of a square of that side on the plan.
 double AreaOf(const SurveyTruth& truth, double side, const Eigen::Vector2d& place) {
-  return side * side /
-         std::max(0.1, truth.surface.Ground().Normal(place.x(), place.y()).z());
+  return side * side / std::max(0.1, truth.surface.Ground().Normal(place.x(), place.y()).z());
 }
 
 // Median over the points that the survey's pictures can give: near places give more of them.
@@ -231,7 +235,9 @@ GapTruth MeasureGapTruth(const SurveyTruth& truth, const PlantedGaps& gaps,
       const double radius = std::max(kCoveredGsd, kCoveredSpacings * step) * gsd;
       cell.is_covered = squared <= radius * radius;
       cell.is_expected = cell.is_covered || NearestGsd(seen) <= kFar * result.survey_gsd;
-      if (!cell.is_covered) cell.cause = cell_truth.CauseAt(seen, place);
+      if (cell.is_covered) continue;
+      cell.cause = cell_truth.CauseAt(seen, place);
+      cell.is_planted = cell_truth.IsPlantedAt(place);
     }
   });
   MarkGaps(100 * result.spacing * result.spacing, &result);

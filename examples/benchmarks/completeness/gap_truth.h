@@ -9,8 +9,18 @@
 namespace colmap_seapoint {
 
 struct TruthCell {
+  // Whether a report that gives this cause is right.
+  bool IsRight(GapCause said) const {
+    const bool is_either = said == GapCause::kNoTexture && cause == GapCause::kViewsDisagree;
+    return said == cause || (is_either && !is_planted);
+  }
+
   bool is_expected = false, is_covered = false;
+  // Where two good pictures see it from two sides: kNoTexture or kViewsDisagree where that was
+  // planted, and elsewhere kViewsDisagree, which stands for both: why nothing could be matched
+  // there the generator does not know.
   GapCause cause = GapCause::kNone;
+  bool is_planted = false;
   double area = 0;      // m^2 along the surface
   bool is_gap = false;  // in a connected part, of one cause, above (10 spacings)^2
 };
