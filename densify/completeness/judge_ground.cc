@@ -134,12 +134,10 @@ class TileJudge {
 
  private:
   // Views that may show a cell of the tile, all of which have their heights.
-  std::vector<int> CandidatesOf(const TileKey& key,
-                                const TiledGrid<GroundCell>::Tile& tile) const {
-    const auto [low, high] =
-        std::minmax_element(tile.begin(), tile.end(), [](const GroundCell& a, const GroundCell& b) {
-          return a.height < b.height;
-        });
+  std::vector<int> CandidatesOf(const TileKey& key, const TiledGrid<GroundCell>::Tile& tile) const {
+    const auto [low, high] = std::minmax_element(
+        tile.begin(), tile.end(),
+        [](const GroundCell& a, const GroundCell& b) { return a.height < b.height; });
     const Eigen::Vector3d middle =
         ground_.PlaceOf(*layer_, key.x * kSide + kSide / 2, key.y * kSide + kSide / 2,
                         0.5 * (low->height + high->height));
@@ -183,7 +181,7 @@ class TileJudge {
   void JudgeCovered(const std::vector<Sight>& sights, int x, int y, GroundCell* cell) const {
     if (IsSampledCell(x, y)) Note(sights, cell);
     if (!is_top_ || !NeedsBadPictures(context_, sights) || IsSmooth(x, y, *cell)) return;
-    cell->is_covered = false;
+    cell->is_covered = cell->is_thin = false;
     cell->cause = GapCause::kBadPicture;
   }
   void JudgeCell(const std::vector<int>& candidates, int x, int y, GroundCell* cell) const {

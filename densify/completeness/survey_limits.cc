@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
+#include <utility>
+#include <vector>
 
 #include "densify/completeness/judge_ground.h"
 
 namespace colmap_seapoint {
 namespace {
 
+constexpr double kPartOfSurvey = 1.0 / 3;  // covered, of an island
 constexpr double kAsGood = 0.9, kOfMedian = 0.25;
 constexpr int kTextureReach = 2;  // both ways, of the textures that are looked at together
 constexpr double kFew = 0.002;    // of all
@@ -16,6 +20,40 @@ struct Bin {
   double all = 0, covered = 0;  // units^2
   double Share() const { return all > 0 ? covered / all : 0; }
 };
+
+// Tiles with expected cells that touch one another, and the areas of their cells.
+struct Island {
+  std::vector<TileKey> tiles;
+  double expected = 0, covered = 0;  // units^2
+};
+
+std::vector<Island> IslandsOf(TiledGrid<GroundCell>* cells) {
+  std::set<TileKey> open;
+  for (const TileKey& key : cells->Keys()) {
+    const TiledGrid<GroundCell>::Tile& tile = cells->ExistingTile(key);
+    if (std::any_of(tile.begin(), tile.end(), [](const auto& c) { return c.is_expected; })) {
+      open.insert(key);
+    }
+  }
+  std::vector<Island> islands;
+  while (!open.empty()) {
+    Island island{{*open.begin()}, 0, 0};
+    open.erase(open.begin());
+    for (size_t next = 0; next < island.tiles.size(); ++next) {
+      const TileKey key = island.tiles[next];
+      for (const GroundCell& cell : cells->ExistingTile(key)) {
+        island.expected += cell.is_expected ? cell.area : 0;
+        island.covered += cell.is_expected && cell.is_covered ? cell.area : 0;
+      }
+      for (int k = 0; k < 9; ++k) {
+        const TileKey beside{key.x + k % 3 - 1, key.y + k / 3 - 1};
+        if (open.erase(beside) > 0) island.tiles.push_back(beside);
+      }
+    }
+    islands.push_back(std::move(island));
+  }
+  return islands;
+}
 
 // What two pictures see from two sides: visit(cell, area that it stands for).
 template <typename Visitor>
@@ -70,6 +108,23 @@ void LeaveOutBackground(double survey_gsd, Ground* ground) {
     layer.cells.ForEach([&](int, int, GroundCell& cell) {
       if (!cell.is_covered && cell.gsd > kFar * survey_gsd) cell.is_expected = false;
     });
+  }
+}
+
+void LeaveOutIslands(Ground* ground) {
+  const auto top = ground->layers.find({Side::kTop, 0});
+  if (top == ground->layers.end()) return;
+  const std::vector<Island> islands = IslandsOf(&top->second.cells);
+  const auto largest =
+      std::max_element(islands.begin(), islands.end(),
+                       [](const Island& a, const Island& b) { return a.expected < b.expected; });
+  for (auto island = islands.begin(); island != islands.end(); ++island) {
+    if (island == largest || island->covered >= kPartOfSurvey * island->expected) continue;
+    for (const TileKey& key : island->tiles) {
+      for (GroundCell& cell : top->second.cells.ExistingTile(key)) {
+        if (!cell.is_covered) cell.is_expected = false;
+      }
+    }
   }
 }
 

@@ -12,6 +12,12 @@ inline constexpr double kFar = 2;
 // far away is not expected, unless it is covered. Such cells keep their cause (outline.h).
 void LeaveOutBackground(double survey_gsd, Ground* ground);
 
+// Far patches, over open water and the like, are no part of the survey: what is missing around them
+// is predicted from them alone. Of the top layer's parts that no expected cells connect, nothing
+// that is missing is expected where less than a third is covered; but in the largest. After
+// JudgeGround.
+void LeaveOutIslands(Ground* ground);
+
 // Texture, as in PictureFacts, from which on this survey's places were matched reliably: of what
 // two pictures see with less, less than nine tenths as much is covered as of the texture that was
 // matched best. Not above the median of what is covered, for most of what is can be matched; a

@@ -87,8 +87,8 @@ CoverMap ViewsMap(const SurveyTruth& survey, const std::vector<Eigen::Vector3f>&
   diagram.pixel = diagram.box.sizes().maxCoeff() / kDiagramPixels;
   diagram.width = static_cast<int>(diagram.box.sizes().x() / diagram.pixel) + 1;
   diagram.height = static_cast<int>(diagram.box.sizes().y() / diagram.pixel) + 1;
-  diagram.has_point.assign(
-      static_cast<size_t>(diagram.width) * static_cast<size_t>(diagram.height), false);
+  diagram.has_point.assign(static_cast<size_t>(diagram.width) * static_cast<size_t>(diagram.height),
+                           false);
   for (const Eigen::Vector2d& place : places) diagram.Draw(place);
   for (int j = 0; j < truth.ny; ++j) {
     for (int i = 0; i < truth.nx; ++i) {
