@@ -6,6 +6,7 @@
 
 #include "densify/completeness/gaps/gap_regions.h"
 #include "densify/completeness/gaps/merge_gaps.h"
+#include "densify/completeness/outline.h"
 #include "densify/completeness/surface/asked_area.h"
 #include "densify/completeness/surface/plan_frame.h"
 #include "densify/completeness/surface/plane_pyramid.h"
@@ -184,6 +185,52 @@ TEST(LeaveOutBackground, WhatAllPicturesSeeFromFarAway) {
   EXPECT_FALSE(top.cells.Find(5, 32)->is_expected);
   EXPECT_EQ(top.cells.Find(5, 32)->cause, GapCause::kImagedOnce);
   EXPECT_TRUE(top.cells.Find(7, 60)->is_expected);
+}
+
+TEST(JudgeUnseen, AnEnclosedSlitIsAHoleAndANotchIsNone) {
+  Ground ground;
+  GroundLayer& top = ground.LayerAt({Side::kTop, 0});
+  const auto is_slit = [](int x, int y) { return x >= 200 && x < 214 && y >= 100 && y < 300; };
+  const auto is_notch = [](int x, int y) { return x >= 90 && x < 110 && y < 20; };
+  for (int y = 0; y < 400; ++y) {
+    for (int x = 0; x < 400; ++x) {
+      if (is_slit(x, y) || is_notch(x, y)) continue;
+      GroundCell& cell = top.cells.At(x, y);
+      cell.is_expected = true;
+      cell.gsd = 1;
+    }
+  }
+  top.surface.Add(200, 200, 0, 1);
+  top.surface.Finish();
+  JudgeUnseen({300, 2}, nullptr, LostSight({}, {}, 1), &ground);
+  for (int y = 104; y < 296; ++y) {
+    EXPECT_EQ(top.cells.Find(207, y)->cause, GapCause::kNeverImaged) << y;
+  }
+  EXPECT_FALSE(top.cells.Find(100, 5)->is_expected);
+}
+
+TEST(LeaveOutIslands, WhatIsFarFromTheSurveyAndHardlyCovered) {
+  Ground ground;
+  GroundLayer& top = ground.LayerAt({Side::kTop, 0});
+  // From x0 on: so many columns of 100 rows, of which the first ones are covered.
+  const auto add = [&](int x0, int num_columns, int num_covered) {
+    for (int y = 0; y < 100; ++y) {
+      for (int x = x0; x < x0 + num_columns; ++x) {
+        GroundCell& cell = top.cells.At(x, y);
+        cell.is_expected = true;
+        cell.is_covered = x < x0 + num_covered;
+        cell.area = 1;
+      }
+    }
+  };
+  add(0, 100, 20);   // the survey itself
+  add(320, 60, 10);  // an island
+  add(640, 60, 30);  // an island that is a part of it
+  LeaveOutIslands(&ground);
+  EXPECT_TRUE(top.cells.Find(90, 50)->is_expected);
+  EXPECT_FALSE(top.cells.Find(370, 50)->is_expected);
+  EXPECT_TRUE(top.cells.Find(322, 50)->is_expected);
+  EXPECT_TRUE(top.cells.Find(690, 50)->is_expected);
 }
 
 // Faces of any steepness lie evenly; heights by chance do not.
