@@ -75,7 +75,7 @@ void MeasureCoverage(double covered, CompletenessResult* result) {
 }
 
 void Measure(CompletenessResult* result) {
-  double views = 0, points = 0, covered = 0, thin = 0, bare = 0;
+  double views = 0, points = 0, covered = 0, thin = 0;
   int64_t num_sampled = 0;
   std::vector<double> parallax;
   for (auto& [key, layer] : result->ground.layers) {
@@ -88,7 +88,6 @@ void Measure(CompletenessResult* result) {
         return;
       }
       covered += cell.area;
-      bare += cell.is_thin ? cell.area : 0;
       points += cell.count;
       if (cell.num_views == 0 || !IsSampledCell(x, y)) return;
       views += cell.num_views;
@@ -99,9 +98,7 @@ void Measure(CompletenessResult* result) {
   if (num_sampled > 0) result->mean_views = views / static_cast<double>(num_sampled);
   result->median_parallax_deg = MedianOf(std::move(parallax));
   if (covered > 0) result->points_per_area = points / covered;
-  if (result->expected_area > 0) {
-    result->share_tolerance = std::max(thin, bare) / result->expected_area;
-  }
+  if (result->expected_area > 0) result->share_tolerance = thin / result->expected_area;
   MeasureCoverage(covered, result);
 }
 

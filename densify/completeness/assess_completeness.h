@@ -84,8 +84,8 @@ struct CompletenessResult {
   double spacing = 0;                  // units
   double expected_area = 0;            // units^2, along the surface
   std::array<CoverageAt, 3> coverage;  // at the spacing, at 2 and at 4 times it
-  // Of the share at the wanted spacing, +-: what is thin, or covered by hardly enough (ground.h),
-  // whichever is more; another threshold would have judged it otherwise.
+  // Of the share at the wanted spacing, +-: what is thin (ground.h), which another threshold would
+  // have judged otherwise. What predicted surfaces and grazing angles cost is not in it.
   double share_tolerance = 0;
   std::array<double, kNumGapCauses> missing_area = {};  // by cause; all cells, also of small gaps
   double mean_views = 0, median_parallax_deg = 0;       // of covered cells

@@ -73,7 +73,7 @@ void FinishTile(const TileKey& key, double side, GroundLayer* layer) {
     const double share = std::max(cell.count / wanted, CountAround(*layer, x, y, 1) / (9 * wanted));
     cell.is_coherent = IsCoherent(*layer, x, y, cell, side);
     cell.is_covered = cell.is_coherent && share >= kCoveredShare;
-    cell.is_thin = cell.is_coherent && share >= kThinShare && share < kFirmShare;
+    cell.is_thin = cell.is_coherent && !cell.is_covered && share >= kThinShare;
     cell.is_expected = cell.is_covered;
   }
 }

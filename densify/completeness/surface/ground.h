@@ -29,8 +29,7 @@ struct GroundCell {
   uint16_t count = 0;  // points of enough confidence
   bool is_coherent = false;  // its points lie on one surface with those around
   bool is_covered = false;
-  // Not covered, yet with too many points to call it a gap; or covered by hardly enough.
-  bool is_thin = false;
+  bool is_thin = false;       // not covered, yet with too many points to call it a gap
   bool is_from_afar = false;  // covered by what farther pictures than usual can give
   bool has_pair = false;      // two pictures see it from two sides
   bool is_expected = false;   // part of what the survey should have covered
@@ -95,6 +94,6 @@ int CountAround(const GroundLayer& layer, int x, int y, int reach);
 
 // Points that the spacing asks for on an area.
 double WantedPoints(double area, double spacing);
-inline constexpr double kThinShare = 0.43, kCoveredShare = 0.6, kFirmShare = 0.84;
+inline constexpr double kCoveredShare = 0.6, kThinShare = 0.43;
 
 }  // namespace colmap_seapoint
