@@ -92,7 +92,7 @@ PlanFrame FindPlan(const CompletenessReporterOptions& options, const SparseModel
 std::vector<std::string> LostPictures(const CompletenessReporterOptions& options,
                                       const SparseModel& model) {
   if (options.image_path.empty()) return {};
-  std::set<std::string> registered;
+  std::set<std::string> registered(options.posed_elsewhere.begin(), options.posed_elsewhere.end());
   for (const PosedImage& image : model.images) registered.insert(image.name);
   std::vector<std::string> lost;
   for (const std::string& name : ListImages(options.image_path)) {
@@ -228,6 +228,7 @@ CompletenessResult Assess(const CompletenessReporterOptions& options, const Spar
   input.asked = ReadArea(options, units.value_or(ModelUnits()));
   input.frame_of = [&](const auto& sample) { return FindPlan(options, model, units, sample); };
   input.lost = LostPictures(options, model);
+  input.posed_elsewhere = options.posed_elsewhere;
   FormerReport former = ReadFormerReport(fs::path(options.output_path) / "completeness.json");
   input.former = std::move(former.gaps);
   input.last_id = former.last_id;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "colmap_seapoint/base/options.h"
 #include "colmap_seapoint/base/run_options.h"
@@ -19,6 +20,9 @@ struct CompletenessReporterOptions {
   std::string mask_path;    // folder of COLMAP's masks; empty = none
   std::string map_path;     // folder that orthomosaic wrote, for the page; empty = none
   std::string area;         // GeoJSON of what was asked for; empty = the outline of what was imaged
+  // Pictures of image_path that are in another model of the same dive: not lost, but not to be
+  // placed here either. Set by the chain.
+  std::vector<std::string> posed_elsewhere;
   CompletenessOptions completeness;
   RunOptions run;
 

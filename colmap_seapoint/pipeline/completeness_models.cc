@@ -1,6 +1,8 @@
 #include "colmap_seapoint/pipeline/completeness_models.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
@@ -31,7 +33,9 @@ void from_json(const nlohmann::ordered_json& json, Assessment& assessment) {
 }
 
 CompletenessReporterOptions ReporterOptions(const AutomaticReconstructorOptions& options,
-                                            const Workspace& workspace, const ModelSummary& model) {
+                                            const Workspace& workspace,
+                                            const std::vector<ModelSummary>& models,
+                                            const ModelSummary& model) {
   CompletenessReporterOptions reporter;
   reporter.image_path = workspace.images.string();
   reporter.input_path = model.path.string();
@@ -41,6 +45,14 @@ CompletenessReporterOptions ReporterOptions(const AutomaticReconstructorOptions&
   reporter.map_path = model.map_path.string();
   reporter.completeness = options.completeness;
   if (reporter.completeness.step == 0) reporter.completeness.step = options.densification.step;
+  for (const ModelSummary& other : models) {
+    if (other.name == model.name) continue;
+    std::copy_if(other.pictures.begin(), other.pictures.end(),
+                 std::back_inserter(reporter.posed_elsewhere), [&](const std::string& name) {
+                   return std::find(model.pictures.begin(), model.pictures.end(), name) ==
+                          model.pictures.end();
+                 });
+  }
   reporter.run = options.run;
   return reporter;
 }
@@ -90,7 +102,8 @@ void ReportCompletenessOfModels(const AutomaticReconstructorOptions& options,
   const std::string map = kOrthomosaicVersion + OptionsFingerprint(OptionValues(options.map));
   for (ModelSummary& model : *models) {
     if (model.densification.points == 0) continue;
-    const CompletenessReporterOptions reporter = ReporterOptions(options, workspace, model);
+    const CompletenessReporterOptions reporter =
+        ReporterOptions(options, workspace, *models, model);
     const Stage stage = {
         kPrefix + model.name, kCompletenessVersion,
         InputsOf(reporter, model, mapper_fingerprint, model.map_path.empty() ? "" : map, *report),

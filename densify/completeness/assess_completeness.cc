@@ -221,7 +221,7 @@ CompletenessResult AssessCompleteness(const CompletenessInput& input,
 
   const PassPlan plan = PlanLikeSurvey(views, ground, options);
   const std::vector<DepthCells> depths = DrawDepths(ground, views, num_threads);
-  result.lost_runs = FindLostRuns(NamesOf(model), input.lost);
+  result.lost_runs = FindLostRuns(NamesOf(model), input.lost, input.posed_elsewhere);
   const LostSight lost(result.lost_runs, views, plan.across);
   const SightContext context{&views, &depths,          &input.facts,
                              &lost,  ground.cell_side, options.min_parallax_deg};
@@ -231,8 +231,9 @@ CompletenessResult AssessCompleteness(const CompletenessInput& input,
   SpreadCells(views, &ground);
   JudgeGround(context, {options.spacing > 0 ? 0 : step, asked}, num_threads, &ground);
   LeaveOutBackground(result.gsd, &ground);
+  LeaveOutIslands(&ground);
   TellWhatLacksTexture(&ground);
-  JudgeUnseen(kOutlineRadius * plan.across, asked, lost, &ground);
+  JudgeUnseen({kOutlineRadius * plan.across, kFar * result.gsd}, asked, lost, &ground);
   FillRecords(context, ground, num_threads, &result.records);
 
   Measure(&result);

@@ -28,7 +28,7 @@
 namespace colmap_seapoint {
 
 // Raise it whenever the same inputs and options give another answer than before.
-inline constexpr char kCompletenessVersion[] = "1";
+inline constexpr char kCompletenessVersion[] = "2";
 
 struct ConfidentPoint {
   SurfacePoint place;
@@ -49,8 +49,9 @@ struct CompletenessInput {
   uint64_t num_points = 0;
   // The plan for a sample of the cloud; empty: the world's own.
   std::function<PlanFrame(const std::vector<Eigen::Vector3d>&)> frame_of;
-  std::vector<PictureFacts> facts;    // by image_idx; Empty(): nobody has looked at it
-  std::vector<std::string> lost;      // names of pictures that are in no model
+  std::vector<PictureFacts> facts;           // by image_idx; Empty(): nobody has looked at it
+  std::vector<std::string> lost;             // names of pictures that are in no model
+  std::vector<std::string> posed_elsewhere;  // and of those that are in another one
   AskedArea asked;                    // in the map's plan; Empty(): the outline of what was imaged
   std::vector<FormerOutline> former;  // gaps of the report before, for their ids
   int last_id = 0;                    // the largest id ever given
@@ -84,7 +85,7 @@ struct CompletenessResult {
   double expected_area = 0;            // units^2, along the surface
   std::array<CoverageAt, 3> coverage;  // at the spacing, at 2 and at 4 times it
   // Of the share at the wanted spacing, +-: what is thin (ground.h), which another threshold would
-  // have judged otherwise.
+  // have judged otherwise. What predicted surfaces and grazing angles cost is not in it.
   double share_tolerance = 0;
   std::array<double, kNumGapCauses> missing_area = {};  // by cause; all cells, also of small gaps
   double mean_views = 0, median_parallax_deg = 0;       // of covered cells

@@ -113,7 +113,12 @@ class TileJudge {
   void Judge(const TileKey& key) const {
     TiledGrid<GroundCell>::Tile& tile = layer_->cells.ExistingTile(key);
     if (!is_top_ && CoveredShare(tile) < kDenseTile) return;
-    const std::vector<int> candidates = CandidatesOf(key);
+    for (int i = 0; i < kSide * kSide; ++i) {
+      GroundCell& cell = tile[static_cast<size_t>(i)];
+      if (cell.is_covered) continue;
+      PredictCell(ground_, *layer_, key.x * kSide + i % kSide, key.y * kSide + i / kSide, &cell);
+    }
+    const std::vector<int> candidates = CandidatesOf(key, tile);
     const bool has_bad = HasBad(candidates);
     for (int i = 0; i < kSide * kSide; ++i) {
       const int x = key.x * kSide + i % kSide, y = key.y * kSide + i / kSide;
@@ -128,10 +133,15 @@ class TileJudge {
   }
 
  private:
-  std::vector<int> CandidatesOf(const TileKey& key) const {
-    const Eigen::Vector3d middle = TileMiddle(ground_, *layer_, key);
-    // Rough ground leaves its plane.
-    const double radius = 2 * TileRadius(ground_);
+  // Views that may show a cell of the tile, all of which have their heights.
+  std::vector<int> CandidatesOf(const TileKey& key, const TiledGrid<GroundCell>::Tile& tile) const {
+    const auto [low, high] = std::minmax_element(
+        tile.begin(), tile.end(),
+        [](const GroundCell& a, const GroundCell& b) { return a.height < b.height; });
+    const Eigen::Vector3d middle =
+        ground_.PlaceOf(*layer_, key.x * kSide + kSide / 2, key.y * kSide + kSide / 2,
+                        0.5 * (low->height + high->height));
+    const double radius = std::hypot(TileRadius(ground_), 0.5 * (high->height - low->height));
     std::vector<int> candidates;
     for (size_t i = 0; i < context_.views->size(); ++i) {
       if ((*context_.views)[i].MaySee(middle, radius)) candidates.push_back(static_cast<int>(i));
@@ -143,7 +153,7 @@ class TileJudge {
     int num_agreeing = 0;
     for (int k = 0; k < 9; ++k) {
       const GroundCell* next = layer_->cells.Find(x + k % 3 - 1, y + k / 3 - 1);
-      if (k == 4 || next == nullptr || next->count == 0) continue;
+      if (k == 4 || next == nullptr || !next->is_coherent) continue;
       const double step = std::abs(next->height - cell.height);
       num_agreeing += step <= kSmoothStep * ground_.cell_side ? 1 : 0;
     }
@@ -171,11 +181,10 @@ class TileJudge {
   void JudgeCovered(const std::vector<Sight>& sights, int x, int y, GroundCell* cell) const {
     if (IsSampledCell(x, y)) Note(sights, cell);
     if (!is_top_ || !NeedsBadPictures(context_, sights) || IsSmooth(x, y, *cell)) return;
-    cell->is_covered = false;
+    cell->is_covered = cell->is_thin = false;
     cell->cause = GapCause::kBadPicture;
   }
   void JudgeCell(const std::vector<int>& candidates, int x, int y, GroundCell* cell) const {
-    PredictCell(ground_, *layer_, x, y, cell);
     if (!is_top_ && !IsHole(*layer_, x, y, cell->height, ground_.cell_side)) return;
     const std::vector<Sight> sights = SightsAt(candidates, x, y, *cell);
     if (sights.empty()) return;

@@ -14,6 +14,8 @@ void SpreadCells(const std::vector<SurveyView>& views, Ground* ground);
 
 // Of covered cells, views and parallax are looked at on every fourth cell both ways.
 inline constexpr int kSampleCells = 4;
+// The one that tells of a cell, along either axis.
+inline int SampledCellOf(int at) { return at & ~(kSampleCells - 1); }
 inline bool IsSampledCell(int x, int y) { return x % kSampleCells == 0 && y % kSampleCells == 0; }
 
 struct JudgeOptions {

@@ -6,11 +6,14 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "densify/completeness/judge_ground.h"
+
 namespace colmap_seapoint {
 namespace {
 
 constexpr int kMinBlock = 4;             // cells
-constexpr double kBlocksARadius = 24;    // the disc is drawn that finely
+constexpr double kBlocksARadius = 48;    // the disc is drawn that finely
+constexpr double kNotch = 0.2;           // of the radius: narrower is no bay of the outline
 constexpr int64_t kMaxBlocks = 1 << 24;  // of the box around all; larger boxes get larger blocks
 
 struct CellBox {
@@ -25,27 +28,43 @@ struct CellBox {
   bool IsEmpty() const { return x0 > x1; }
 };
 
+// kBay: open to the outside, and yet within the outline.
+enum BlockPlace : uint8_t { kOutside = 0, kBay = 1, kInside = 255 };
+
 // Squares of `size` cells; block (0, 0) begins at cell (x0, y0).
 struct Blocks {
   int x0 = 0, y0 = 0, size = 1;
-  cv::Mat inside;  // 8 bit, 255 inside
+  cv::Mat inside;  // 8 bit, BlockPlace
 
-  bool Holds(int x, int y) const {
+  uint8_t PlaceOf(int x, int y) const {
     const int a = (x - x0) / size, b = (y - y0) / size;
-    return a >= 0 && b >= 0 && a < inside.cols && b < inside.rows && inside.at<uint8_t>(b, a) != 0;
+    const bool is_known = a >= 0 && b >= 0 && a < inside.cols && b < inside.rows;
+    return is_known ? inside.at<uint8_t>(b, a) : uint8_t{kOutside};
   }
 };
 
-CellBox ExpectedBox(TiledGrid<GroundCell>* cells) {
-  CellBox box;
+// Calls visit(x, y) for all that is expected but for what is covered from so far away that it is
+// background: nobody meant to measure between patches of that. Of covered cells distances are known
+// of a sample.
+template <typename Visitor>
+void ForEachMeant(double max_gsd, TiledGrid<GroundCell>* cells, const Visitor& visit) {
   cells->ForEach([&](int x, int y, const GroundCell& cell) {
-    if (cell.is_expected) box.Take(x, y);
+    if (!cell.is_expected) return;
+    const GroundCell* sample = cells->Find(SampledCellOf(x), SampledCellOf(y));
+    const float gsd = cell.gsd > 0 || sample == nullptr ? cell.gsd : sample->gsd;
+    if (gsd <= max_gsd) visit(x, y);
   });
+}
+
+CellBox MeantBox(double max_gsd, TiledGrid<GroundCell>* cells) {
+  CellBox box;
+  ForEachMeant(max_gsd, cells, [&](int x, int y) { box.Take(x, y); });
   return box;
 }
 
-// Blocks of which half is expected, with a margin all round.
-Blocks ExpectedBlocks(const CellBox& box, double radius_cells, TiledGrid<GroundCell>* cells) {
+// Blocks of which half was meant, with a margin all round.
+Blocks MeantBlocks(const CellBox& box, double radius_cells, double max_gsd,
+                   TiledGrid<GroundCell>* cells) {
   Blocks blocks;
   blocks.size = std::max(kMinBlock, static_cast<int>(radius_cells / kBlocksARadius));
   const auto num_blocks = [&] {
@@ -57,27 +76,38 @@ Blocks ExpectedBlocks(const CellBox& box, double radius_cells, TiledGrid<GroundC
   blocks.y0 = box.y0 - margin * blocks.size;
   cv::Mat count((box.y1 - blocks.y0) / blocks.size + margin + 1,
                 (box.x1 - blocks.x0) / blocks.size + margin + 1, CV_32S, cv::Scalar(0));
-  cells->ForEach([&](int x, int y, const GroundCell& cell) {
-    if (!cell.is_expected) return;
+  ForEachMeant(max_gsd, cells, [&](int x, int y) {
     ++count.at<int>((y - blocks.y0) / blocks.size, (x - blocks.x0) / blocks.size);
   });
   blocks.inside = count * 2 >= blocks.size * blocks.size;
   return blocks;
 }
 
+// What no way from outside leads to, be it as narrow as it may.
+cv::Mat Holes(const cv::Mat& inside) {
+  cv::Mat outside = ~inside;  // with a margin all round: all that is outside hangs together there
+  cv::floodFill(outside, cv::Point(0, 0), 0, nullptr, 0, 0, 4);
+  return outside;
+}
+
 void Close(double radius_blocks, cv::Mat* inside) {
+  const cv::Mat holes = Holes(*inside);
   cv::Mat distance;
   cv::distanceTransform(~*inside, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
   cv::Mat grown = distance <= radius_blocks;
   cv::distanceTransform(grown, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
   cv::Mat added = (distance > radius_blocks) & ~*inside;
-  // What is added no wider than two blocks comes from the blocks' steps.
+  // Between the corners of pictures lie notches that are no holes.
+  const int notch = 2 * static_cast<int>(kNotch * radius_blocks / 2) + 1;
   cv::morphologyEx(added, added, cv::MORPH_OPEN,
-                   cv::getStructuringElement(cv::MORPH_RECT, cv::Size(3, 3)));
+                   cv::getStructuringElement(cv::MORPH_RECT, cv::Size(notch, notch)));
+  const cv::Mat bays = added & ~holes;
+  added |= holes;
   // The outermost blocks are expected in part: beyond is no hole.
   *inside |= added;
   cv::erode(*inside, *inside, cv::Mat(), cv::Point(-1, -1), 1, cv::BORDER_CONSTANT, 0);
   *inside |= added;
+  inside->setTo(cv::Scalar(kBay), bays);
 }
 
 Blocks AskedBlocks(const Ground& ground, const AskedArea& asked) {
@@ -120,25 +150,29 @@ void MakeTiles(const Blocks& blocks, TiledGrid<GroundCell>* cells) {
 
 }  // namespace
 
-void JudgeUnseen(double radius, const AskedArea* asked, const LostSight& lost, Ground* ground) {
+void JudgeUnseen(const OutlineLimits& limits, const AskedArea* asked, const LostSight& lost,
+                 Ground* ground) {
   GroundLayer& top = ground->LayerAt({Side::kTop, 0});
-  const CellBox box = ExpectedBox(&top.cells);
+  const CellBox box = MeantBox(limits.max_gsd, &top.cells);
   if (asked == nullptr && box.IsEmpty()) return;
-  const double radius_cells = radius / ground->cell_side;
+  const double radius_cells = limits.radius / ground->cell_side;
   Blocks blocks;
   if (asked != nullptr) {
     blocks = AskedBlocks(*ground, *asked);
   } else {
-    blocks = ExpectedBlocks(box, radius_cells, &top.cells);
+    blocks = MeantBlocks(box, radius_cells, limits.max_gsd, &top.cells);
     Close(radius_cells / blocks.size, &blocks.inside);
   }
   MakeTiles(blocks, &top.cells);
   top.cells.ForEach([&](int x, int y, GroundCell& cell) {
-    if (cell.is_expected || cell.cause == GapCause::kOutOfArea || !blocks.Holds(x, y)) return;
+    if (cell.is_expected || cell.cause == GapCause::kOutOfArea) return;
+    const uint8_t at = blocks.PlaceOf(x, y);
+    const bool is_background = cell.cause != GapCause::kNone;
+    if (at == kOutside || (at == kBay && is_background)) return;
     const Eigen::Vector2d middle((x + 0.5) * ground->cell_side, (y + 0.5) * ground->cell_side);
     if (asked != nullptr && !asked->Contains(middle)) return;
     cell.is_expected = true;
-    if (cell.is_covered || cell.cause != GapCause::kNone) return;  // background
+    if (is_background) return;
     PredictCell(*ground, top, x, y, &cell);
     const bool is_lost = lost.RunThatSaw(ground->PlaceOf(top, x, y, cell.height)) >= 0;
     cell.cause = is_lost ? GapCause::kPoseLost : GapCause::kNeverImaged;

@@ -7,11 +7,17 @@
 
 namespace colmap_seapoint {
 
-// The outline is the closing of what is expected of the top layer: all that a disc of `radius`
-// (units) cannot reach from outside without touching expected ground. Cells inside of it that no
-// picture saw become expected: kPoseLost where lost pictures must have been, else kNeverImaged; and
-// so does background that lies inside. With an asked area its inside takes the outline's place.
-// Cells that are not there yet are made.
-void JudgeUnseen(double radius, const AskedArea* asked, const LostSight& lost, Ground* ground);
+struct OutlineLimits {
+  double radius = 0;   // of the disc, units
+  double max_gsd = 0;  // units a pixel: what all pictures see from farther away outlines nothing
+};
+
+// The outline is the closing of what is expected of the top layer and seen from near enough: all
+// that a disc cannot reach from outside without touching it, and all that is enclosed. Cells inside
+// of it that no picture saw become expected: kPoseLost where lost pictures must have been, else
+// kNeverImaged; and so does background that is enclosed. With an asked area its inside takes the
+// outline's place. Cells that are not there yet are made.
+void JudgeUnseen(const OutlineLimits& limits, const AskedArea* asked, const LostSight& lost,
+                 Ground* ground);
 
 }  // namespace colmap_seapoint

@@ -2,21 +2,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
+#include <set>
+#include <utility>
+#include <vector>
 
 #include "densify/completeness/judge_ground.h"
 
 namespace colmap_seapoint {
 namespace {
 
-constexpr double kBinRatio = 1.1;  // from one bin of GSD to the next
-constexpr int kNumBins = 64;
-constexpr int kFirstFar = 5;  // the bin of 1.5 times the survey's GSD
-constexpr int kWindow = 3;    // bins that are looked at together
-constexpr double kMostlyNothing = 0.5;
-constexpr double kMinAreaShare = 0.005;  // of all, in a window: less tells nothing
-constexpr double kFarForOne = 2;         // of the survey's GSD
+constexpr double kPartOfSurvey = 1.0 / 3;  // covered, of an island
 constexpr double kAsGood = 0.9, kOfMedian = 0.25;
 constexpr int kTextureReach = 2;  // both ways, of the textures that are looked at together
 constexpr double kFew = 0.002;    // of all
@@ -25,6 +20,40 @@ struct Bin {
   double all = 0, covered = 0;  // units^2
   double Share() const { return all > 0 ? covered / all : 0; }
 };
+
+// Tiles with expected cells that touch one another, and the areas of their cells.
+struct Island {
+  std::vector<TileKey> tiles;
+  double expected = 0, covered = 0;  // units^2
+};
+
+std::vector<Island> IslandsOf(TiledGrid<GroundCell>* cells) {
+  std::set<TileKey> open;
+  for (const TileKey& key : cells->Keys()) {
+    const TiledGrid<GroundCell>::Tile& tile = cells->ExistingTile(key);
+    if (std::any_of(tile.begin(), tile.end(), [](const auto& c) { return c.is_expected; })) {
+      open.insert(key);
+    }
+  }
+  std::vector<Island> islands;
+  while (!open.empty()) {
+    Island island{{*open.begin()}, 0, 0};
+    open.erase(open.begin());
+    for (size_t next = 0; next < island.tiles.size(); ++next) {
+      const TileKey key = island.tiles[next];
+      for (const GroundCell& cell : cells->ExistingTile(key)) {
+        island.expected += cell.is_expected ? cell.area : 0;
+        island.covered += cell.is_expected && cell.is_covered ? cell.area : 0;
+      }
+      for (int k = 0; k < 9; ++k) {
+        const TileKey beside{key.x + k % 3 - 1, key.y + k / 3 - 1};
+        if (open.erase(beside) > 0) island.tiles.push_back(beside);
+      }
+    }
+    islands.push_back(std::move(island));
+  }
+  return islands;
+}
 
 // What two pictures see from two sides: visit(cell, area that it stands for).
 template <typename Visitor>
@@ -37,18 +66,6 @@ void ForEachPairCell(const GroundLayer& layer, const Visitor& visit) {
     if (is_of_sample && !IsSampledCell(x, y)) return;
     visit(cell, (is_of_sample ? kSampleCells * kSampleCells : 1) * double{cell.area});
   });
-}
-
-// By GSD: bin 0 holds all up to the survey's own.
-std::array<Bin, kNumBins> CoverageByGsd(double survey_gsd, const GroundLayer& top) {
-  std::array<Bin, kNumBins> bins;
-  ForEachPairCell(top, [&](const GroundCell& cell, double area) {
-    const double at = std::ceil(std::log(cell.gsd / survey_gsd) / std::log(kBinRatio));
-    Bin& bin = bins[static_cast<size_t>(std::clamp(at, 0.0, kNumBins - 1.0))];
-    bin.all += area;
-    bin.covered += cell.is_covered ? area : 0;
-  });
-  return bins;
 }
 
 using TextureBins = std::array<Bin, 255>;
@@ -64,8 +81,7 @@ TextureBins CoverageByTexture(const GroundLayer& top) {
   return bins;
 }
 
-template <typename Bins>
-Bin Sum(const Bins& bins, int from, int to) {
+Bin Sum(const TextureBins& bins, int from, int to) {
   Bin sum;
   for (int k = std::max(0, from); k < std::min(to, static_cast<int>(bins.size())); ++k) {
     sum.all += bins[static_cast<size_t>(k)].all;
@@ -87,29 +103,28 @@ int MedianCovered(const TextureBins& bins) {
 
 }  // namespace
 
-double LimitOfSight(double survey_gsd, const Ground& ground) {
-  const auto top = ground.layers.find({Side::kTop, 0});
-  if (top == ground.layers.end()) return std::numeric_limits<double>::infinity();
-  const std::array<Bin, kNumBins> bins = CoverageByGsd(survey_gsd, top->second);
-  const double all = Sum(bins, 0, kNumBins).all;
-  for (int k = kFirstFar; k + kWindow <= kNumBins; ++k) {
-    const Bin window = Sum(bins, k, k + kWindow);
-    if (window.all < kMinAreaShare * all) continue;
-    if (window.Share() < kMostlyNothing * bins[0].Share()) {
-      return survey_gsd * std::pow(kBinRatio, k - 1);
-    }
-  }
-  return std::numeric_limits<double>::infinity();
-}
-
 void LeaveOutBackground(double survey_gsd, Ground* ground) {
-  const double limit = LimitOfSight(survey_gsd, *ground);
-  const double limit_for_one = std::min(limit, kFarForOne * survey_gsd);
   for (auto& [key, layer] : ground->layers) {
     layer.cells.ForEach([&](int, int, GroundCell& cell) {
-      if (cell.is_covered && !cell.is_from_afar) return;
-      if (cell.gsd > (cell.has_pair ? limit : limit_for_one)) cell.is_expected = false;
+      if (!cell.is_covered && cell.gsd > kFar * survey_gsd) cell.is_expected = false;
     });
+  }
+}
+
+void LeaveOutIslands(Ground* ground) {
+  const auto top = ground->layers.find({Side::kTop, 0});
+  if (top == ground->layers.end()) return;
+  const std::vector<Island> islands = IslandsOf(&top->second.cells);
+  const auto largest =
+      std::max_element(islands.begin(), islands.end(),
+                       [](const Island& a, const Island& b) { return a.expected < b.expected; });
+  for (auto island = islands.begin(); island != islands.end(); ++island) {
+    if (island == largest || island->covered >= kPartOfSurvey * island->expected) continue;
+    for (const TileKey& key : island->tiles) {
+      for (GroundCell& cell : top->second.cells.ExistingTile(key)) {
+        if (!cell.is_covered) cell.is_expected = false;
+      }
+    }
   }
 }
 

@@ -5,16 +5,18 @@
 
 namespace colmap_seapoint {
 
-// GSD of the nearest picture, units a pixel, beyond which the survey's pictures mostly gave
-// nothing, because that is too far away in the water, or seen at too grazing an angle: where less
-// than half as much of what two pictures see is covered as where it is `survey_gsd` or less.
-// Infinite where that is nowhere so. At least 1.5 survey_gsd. Of the top layer, after JudgeGround.
-double LimitOfSight(double survey_gsd, const Ground& ground);
+// GSD of the nearest picture, over the survey's own, beyond which a place is background.
+inline constexpr double kFar = 2;
 
-// A camera that looks ahead shows much that nobody meant to measure. Beyond the limit of sight
-// nothing is expected any more, nor where no two pictures see a place from two sides and the
-// nearest has twice the survey's GSD or more. Such cells keep their cause (outline.h).
+// A camera that looks ahead shows much that nobody meant to measure. What all pictures see from so
+// far away is not expected, unless it is covered. Such cells keep their cause (outline.h).
 void LeaveOutBackground(double survey_gsd, Ground* ground);
+
+// Far patches, over open water and the like, are no part of the survey: what is missing around them
+// is predicted from them alone. Of the top layer's parts that no expected cells connect, nothing
+// that is missing is expected where less than a third is covered; but in the largest. After
+// JudgeGround.
+void LeaveOutIslands(Ground* ground);
 
 // Texture, as in PictureFacts, from which on this survey's places were matched reliably: of what
 // two pictures see with less, less than nine tenths as much is covered as of the texture that was

@@ -35,7 +35,9 @@ SurveyView Between(const SurveyView& a, const SurveyView& b, double share) {
 }  // namespace
 
 std::vector<LostRun> FindLostRuns(const std::vector<std::string>& registered,
-                                  const std::vector<std::string>& lost) {
+                                  const std::vector<std::string>& lost,
+                                  const std::vector<std::string>& elsewhere) {
+  constexpr int kLost = -2, kElsewhere = -1;
   struct Entry {
     std::string name;
     int image_idx;
@@ -44,16 +46,18 @@ std::vector<LostRun> FindLostRuns(const std::vector<std::string>& registered,
   for (size_t i = 0; i < registered.size(); ++i) {
     track.push_back({registered[i], static_cast<int>(i)});
   }
-  for (const std::string& name : lost) track.push_back({name, -1});
+  for (const std::string& name : lost) track.push_back({name, kLost});
+  for (const std::string& name : elsewhere) track.push_back({name, kElsewhere});
   std::sort(track.begin(), track.end(),
             [](const Entry& a, const Entry& b) { return NaturalLess(a.name, b.name); });
   std::vector<LostRun> runs;
   for (size_t i = 0; i < track.size(); ++i) {
-    if (track[i].image_idx >= 0) continue;
+    if (track[i].image_idx != kLost) continue;
     const std::string folder = FolderOf(track[i].name);
     LostRun run;
     if (i > 0 && FolderOf(track[i - 1].name) == folder) run.before = track[i - 1].image_idx;
-    for (; i < track.size() && track[i].image_idx < 0 && FolderOf(track[i].name) == folder; ++i) {
+    for (; i < track.size() && track[i].image_idx == kLost && FolderOf(track[i].name) == folder;
+         ++i) {
       run.names.push_back(track[i].name);
     }
     if (i < track.size() && FolderOf(track[i].name) == folder) run.after = track[i].image_idx;

@@ -8,16 +8,18 @@
 
 namespace colmap_seapoint {
 
-// Pictures that follow one another, none of them in the model, between two that are.
+// Pictures that follow one another, none of them in any model, between two that are in this one.
 struct LostRun {
   std::vector<std::string> names;
-  int before = -1, after = -1;  // image_idx; -1: the track begins or ends with them
+  // image_idx; -1: the track begins or ends with them, or goes on in another model.
+  int before = -1, after = -1;
 };
 
-// `registered`, `lost`: names of pictures; those of one folder, in natural order, are one track.
-// `registered` is in the order of the model's images.
+// `registered`, `lost`, `elsewhere` (in another model): names of pictures; those of one folder, in
+// natural order, are one track. `registered` is in the order of the model's images.
 std::vector<LostRun> FindLostRuns(const std::vector<std::string>& registered,
-                                  const std::vector<std::string>& lost);
+                                  const std::vector<std::string>& lost,
+                                  const std::vector<std::string>& elsewhere);
 
 // What a run may have seen. A few pictures between two neighbours are placed on the way from one to
 // the other. Of a longer run no more is said than "somewhere between A and B": all that lies nearer

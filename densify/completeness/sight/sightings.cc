@@ -18,6 +18,13 @@ const double kMinCosine = std::cos(80 / kDegPerRad);
 constexpr double kHiddenShare = 0.01, kHiddenCells = 3;
 
 constexpr double kMaxParallax = 0.2;  // radians
+// Pixels from a place to the edge of a picture that a window of correlation asks for.
+constexpr double kWindow = 12;
+
+bool IsAtEdge(const Camera& camera, const Eigen::Vector2d& pixel) {
+  return pixel.x() < kWindow || pixel.y() < kWindow || pixel.x() > camera.width - kWindow ||
+         pixel.y() > camera.height - kWindow;
+}
 
 SightKind KindOf(const SightContext& context, int image_idx, const Eigen::Vector2d& pixel,
                  double depth, double slack, uint8_t* texture) {
@@ -27,7 +34,7 @@ SightKind KindOf(const SightContext& context, int image_idx, const Eigen::Vector
   const uint8_t flags = facts.Empty() ? 0 : facts.flags[cell];
   *texture = facts.Empty() ? kUnknownTexture : facts.texture[cell];
   if (flags & kMaskedCell) return SightKind::kMasked;
-  if (IsHidden((*context.depths)[i], pixel, depth, slack)) return SightKind::kHidden;
+  if (ShowsAnother((*context.depths)[i], pixel, depth, slack)) return SightKind::kHidden;
   return facts.is_bad || (flags & kBadlyExposedCell) ? SightKind::kBad : SightKind::kGood;
 }
 
@@ -47,6 +54,7 @@ bool HasPair(const std::vector<Sight>& sights, double min_parallax_deg, const Is
   return false;
 }
 
+bool IsSharp(SightKind kind) { return kind == SightKind::kGood || kind == SightKind::kEdge; }
 bool IsGood(SightKind kind) { return kind == SightKind::kGood; }
 bool IsSeen(SightKind kind) { return kind == SightKind::kGood || kind == SightKind::kBad; }
 
@@ -65,17 +73,23 @@ std::vector<Sight> SightsOf(const SightContext& context, const std::vector<int>&
     const SurveyView& view = (*context.views)[static_cast<size_t>(image_idx)];
     const Eigen::Vector3d to_camera = view.center - place;
     const double distance = to_camera.norm();
-    if (normal.dot(to_camera) < kMinCosine * distance * normal_length) continue;
     const auto pixel = view.Project(place);
     if (!pixel) continue;
     Sight sight;
     const double depth = view.rotation.row(2).dot(place) + view.translation.z();
-    const double cosine = normal.dot(to_camera) / (distance * normal_length);
-    const double across = distance / view.camera->MeanFocal();
+    const double facing = normal.dot(to_camera) / (distance * normal_length);
+    const double cosine = std::max(kMinCosine, facing);
+    const double across = view.GsdAt(place);
     // A cell of depths holds a piece of a tilted surface from its nearest to its farthest end.
     const double within_cell = kDepthCell * across * std::sqrt(1 - cosine * cosine) / cosine;
     const double slack = kHiddenShare * depth + kHiddenCells * context.cell_side + within_cell;
     sight.kind = KindOf(context, image_idx, *pixel, depth, slack, &sight.texture);
+    if (sight.kind != SightKind::kMasked) {
+      if (facing < kMinCosine) sight.kind = SightKind::kHidden;
+      if (sight.kind != SightKind::kHidden && IsAtEdge(*view.camera, *pixel)) {
+        sight.kind = SightKind::kEdge;
+      }
+    }
     sight.gsd = across / std::sqrt(cosine);
     sight.toward = to_camera / distance;
     sights.push_back(sight);
@@ -101,7 +115,7 @@ std::optional<double> PairGsd(const std::vector<Sight>& sights, double min_paral
   double least = std::numeric_limits<double>::infinity(), gsd = 0;
   for (size_t k = 1; k < sights.size(); ++k) {
     for (size_t m = 0; m < k; ++m) {
-      if (sights[k].kind != SightKind::kGood || sights[m].kind != SightKind::kGood) continue;
+      if (!IsSharp(sights[k].kind) || !IsSharp(sights[m].kind)) continue;
       const double cosine = sights[m].toward.dot(sights[k].toward);
       if (cosine > max_cosine) continue;
       const double coarser = std::max(sights[k].gsd, sights[m].gsd);
@@ -158,7 +172,9 @@ GapCause CauseOf(const SightContext& context, const std::vector<Sight>& sights,
   }
   if (has_masked && num_good < 2) return GapCause::kOutOfArea;
   if (num_good >= 2) return GapCause::kSmallParallax;
-  if (num_good + Count(sights, SightKind::kBad) >= 1) return GapCause::kImagedOnce;
+  if (num_good + Count(sights, SightKind::kBad) + Count(sights, SightKind::kEdge) >= 1) {
+    return GapCause::kImagedOnce;
+  }
   return has_hidden ? GapCause::kOccluded : GapCause::kNone;
 }
 

@@ -15,7 +15,9 @@ namespace colmap_seapoint {
 // Of pictures that nobody has looked at.
 inline constexpr uint8_t kUnknownTexture = 255;
 
-enum class SightKind : uint8_t { kGood, kBad, kHidden, kMasked };
+// kHidden: something stands before the place, or its surface is turned away. kEdge: so near to the
+// picture's edge that nothing can be matched there.
+enum class SightKind : uint8_t { kGood, kBad, kHidden, kMasked, kEdge };
 
 struct Sight {
   SightKind kind = SightKind::kGood;
@@ -34,8 +36,8 @@ struct SightContext {
   double min_parallax_deg = 2;
 };
 
-// `normal` need not be of unit length. The pictures that hold the place within their range and see
-// its surface at less than 80 degrees from the normal, in the order of `candidates`.
+// `normal` need not be of unit length. The pictures that hold the place within their range, in the
+// order of `candidates`. A surface at more than 80 degrees from its normal is hidden.
 std::vector<Sight> SightsOf(const SightContext& context, const std::vector<int>& candidates,
                             const Eigen::Vector3d& place, const Eigen::Vector3d& normal);
 
@@ -43,9 +45,9 @@ std::vector<Sight> SightsOf(const SightContext& context, const std::vector<int>&
 double ParallaxDeg(const std::vector<Sight>& sights);
 // Good ones.
 int NumGood(const std::vector<Sight>& sights);
-// GSD of the coarser one of the two good pictures that measure the place best: whose GSD over their
-// parallax, which counts up to 11.5 degrees as in densification, is the least. nullopt where no two
-// see it `min_parallax_deg` apart.
+// GSD of the coarser one of the two good pictures, be it at their edges, that measure the place
+// best: whose GSD over their parallax, which counts up to 11.5 degrees as in densification, is the
+// least. nullopt where no two see it `min_parallax_deg` apart.
 std::optional<double> PairGsd(const std::vector<Sight>& sights, double min_parallax_deg);
 // Of all but the masked ones; infinite for none.
 double NearestGsd(const std::vector<Sight>& sights);

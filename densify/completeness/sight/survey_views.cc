@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "colmap_seapoint/base/camera_projection.h"
 #include "colmap_seapoint/base/median.h"
 #include "colmap_seapoint/base/parallel.h"
 
@@ -35,7 +36,7 @@ void DrawTile(const Ground& ground, const GroundLayer& layer, const TileKey& key
   const Eigen::Vector3d toward = layer.layer_from_world.row(2).transpose();
   for (int i = 0; i < kSide * kSide; ++i) {
     const GroundCell& cell = tile[static_cast<size_t>(i)];
-    if (cell.count == 0) continue;
+    if (!cell.is_coherent) continue;
     const Eigen::Vector3d place =
         ground.PlaceOf(layer, key.x * kSide + i % kSide, key.y * kSide + i / kSide, cell.height);
     // Seen from behind it is no surface.
@@ -71,6 +72,12 @@ std::optional<Eigen::Vector2d> SurveyView::Project(const Eigen::Vector3d& place)
   return pixel;
 }
 
+double SurveyView::GsdAt(const Eigen::Vector3d& place) const {
+  const double away =
+      is_fisheye ? (place - center).norm() : rotation.row(2).dot(place) + translation.z();
+  return away / camera->MeanFocal();
+}
+
 bool SurveyView::MaySee(const Eigen::Vector3d& middle, double radius) const {
   const Eigen::Vector3d in_cam = rotation * middle + translation;
   const double distance = in_cam.norm();
@@ -86,6 +93,7 @@ SurveyView MakeView(const Camera& camera, const Rigid3d& cam_from_world, double 
   view.rotation = cam_from_world.rotation.toRotationMatrix();
   view.translation = cam_from_world.translation;
   view.center = cam_from_world.OriginInSource();
+  view.is_fisheye = IsFisheye(camera.model) || camera.model == CameraModel::kEquirectangular;
   view.max_angle = MaxAngle(camera);
   view.max_range = max_range;
   return view;
@@ -127,7 +135,7 @@ std::vector<DepthCells> DrawDepths(const Ground& ground, const std::vector<Surve
     for (const TileKey& key : layer.cells.Keys()) {
       float low = std::numeric_limits<float>::infinity(), high = -low;
       for (const GroundCell& cell : layer.cells.ExistingTile(key)) {
-        if (cell.count == 0) continue;
+        if (!cell.is_coherent) continue;
         low = std::min(low, cell.height);
         high = std::max(high, cell.height);
       }
@@ -152,11 +160,12 @@ std::vector<DepthCells> DrawDepths(const Ground& ground, const std::vector<Surve
   return depths;
 }
 
-bool IsHidden(const DepthCells& depths, const Eigen::Vector2d& pixel, double depth, double slack) {
+bool ShowsAnother(const DepthCells& depths, const Eigen::Vector2d& pixel, double depth,
+                  double slack) {
   const int x = std::clamp(static_cast<int>(pixel.x()) / kDepthCell, 0, depths.width - 1);
   const int y = std::clamp(static_cast<int>(pixel.y()) / kDepthCell, 0, depths.height - 1);
   const float nearest = depths.At(x, y);
-  return nearest > 0 && nearest < depth - slack;
+  return nearest > 0 && std::abs(nearest - depth) > slack;
 }
 
 }  // namespace colmap_seapoint

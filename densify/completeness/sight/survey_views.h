@@ -15,6 +15,7 @@ struct SurveyView {
   const Camera* camera = nullptr;
   Eigen::Matrix3d rotation;  // camera from world
   Eigen::Vector3d translation, center;
+  bool is_fisheye = false;
   double max_angle = 0;  // radians from the axis to the farthest corner
   double max_range = 0;  // units; what is farther is lost in the water
 
@@ -22,10 +23,8 @@ struct SurveyView {
   std::optional<Eigen::Vector2d> Project(const Eigen::Vector3d& place) const;
   // Whether something of a sphere may be in the picture. False is certain.
   bool MaySee(const Eigen::Vector3d& middle, double radius) const;
-  // Units a pixel.
-  double GsdAt(const Eigen::Vector3d& place) const {
-    return (place - center).norm() / camera->MeanFocal();
-  }
+  // Units a pixel: by the depth, in a fisheye's picture by the distance.
+  double GsdAt(const Eigen::Vector3d& place) const;
 };
 
 SurveyView MakeView(const Camera& camera, const Rigid3d& cam_from_world, double max_range);
@@ -44,7 +43,10 @@ using DepthCells = FloatImage;
 // view; 4 bytes a depth cell.
 std::vector<DepthCells> DrawDepths(const Ground& ground, const std::vector<SurveyView>& views,
                                    int num_threads);
-// Whether the cloud hides a place in camera coordinates, seen at that pixel. `slack`: units.
-bool IsHidden(const DepthCells& depths, const Eigen::Vector2d& pixel, double depth, double slack);
+// Whether a view shows another surface of the cloud at that pixel than a place of that depth: one
+// before it, which hides it; or one behind it, and then the place is not where it was predicted,
+// for instance in the shadow of a boulder, over which the prediction slopes down. `slack`: units.
+bool ShowsAnother(const DepthCells& depths, const Eigen::Vector2d& pixel, double depth,
+                  double slack);
 
 }  // namespace colmap_seapoint

@@ -14,6 +14,8 @@ constexpr double kMaxAreaFactor = 4;
 // Of the 8 cells around: so many must lie within so many cells' sides in height.
 constexpr int kMinAgreeing = 2;
 constexpr double kMaxStep = 2;
+// Or that many of the 4 pairs of opposite ones lie evenly on both sides of the cell.
+constexpr int kMinEven = 3;
 
 double Mean(double mean, double value, uint16_t count) { return mean + (value - mean) / count; }
 
@@ -39,16 +41,19 @@ Eigen::Vector2d SlopeAt(const GroundLayer& layer, int x, int y, double side) {
 }
 
 // Whether a cell lies on one surface with its neighbours: what was matched by chance, of what moved
-// or shows nothing, lies anywhere.
+// or shows nothing, lies anywhere. Opposite neighbours on a steep face differ, but evenly.
 bool IsCoherent(const GroundLayer& layer, int x, int y, const GroundCell& cell, double side) {
-  int num_agreeing = 0, num_others = 0;
+  double step[9];  // of the neighbours against the cell; NaN: no points
+  int num_agreeing = 0, num_others = 0, num_even = 0;
   for (int k = 0; k < 9; ++k) {
     const GroundCell* next = layer.cells.Find(x + k % 3 - 1, y + k / 3 - 1);
-    if (k == 4 || next == nullptr || next->count == 0) continue;
-    const bool agrees = std::abs(next->height - cell.height) <= kMaxStep * side;
-    ++(agrees ? num_agreeing : num_others);
+    const bool has_points = next != nullptr && next->count > 0;
+    step[k] = has_points ? next->height - cell.height : std::nan("");
+    if (k == 4 || !has_points) continue;
+    ++(std::abs(step[k]) <= kMaxStep * side ? num_agreeing : num_others);
   }
-  return num_agreeing >= kMinAgreeing && num_agreeing >= num_others;
+  for (int k = 0; k < 4; ++k) num_even += std::abs(step[k] + step[8 - k]) <= side ? 1 : 0;
+  return (num_agreeing >= kMinAgreeing && num_agreeing >= num_others) || num_even >= kMinEven;
 }
 
 double AreaOf(const Eigen::Vector2d& slope, double side) {
@@ -66,9 +71,9 @@ void FinishTile(const TileKey& key, double side, GroundLayer* layer) {
     cell.area = static_cast<float>(AreaOf(SlopeAt(*layer, x, y, side), side));
     const double wanted = WantedPoints(cell.area, spacing);
     const double share = std::max(cell.count / wanted, CountAround(*layer, x, y, 1) / (9 * wanted));
-    const bool is_coherent = IsCoherent(*layer, x, y, cell, side);
-    cell.is_covered = is_coherent && share >= kCoveredShare;
-    cell.is_thin = is_coherent && !cell.is_covered && share >= kThinShare;
+    cell.is_coherent = IsCoherent(*layer, x, y, cell, side);
+    cell.is_covered = cell.is_coherent && share >= kCoveredShare;
+    cell.is_thin = cell.is_coherent && !cell.is_covered && share >= kThinShare;
     cell.is_expected = cell.is_covered;
   }
 }
@@ -127,7 +132,7 @@ void FinishPoints(int num_threads, Ground* ground) {
       FinishTile(keys[static_cast<size_t>(i)], ground->cell_side, &layer);
     });
     layer.cells.ForEach([&, &layer = layer](int x, int y, GroundCell& cell) {
-      if (cell.count == 0) return;
+      if (!cell.is_coherent) return;
       layer.surface.Add((x + 0.5) * ground->cell_side, (y + 0.5) * ground->cell_side, cell.height,
                         cell.count);
     });
@@ -138,7 +143,7 @@ void FinishPoints(int num_threads, Ground* ground) {
 void PredictCell(const Ground& ground, const GroundLayer& layer, int x, int y, GroundCell* cell) {
   const PlaneAt plane =
       layer.surface.At((x + 0.5) * ground.cell_side, (y + 0.5) * ground.cell_side);
-  if (cell->count == 0) cell->height = static_cast<float>(plane.height);
+  if (!cell->is_coherent) cell->height = static_cast<float>(plane.height);
   cell->area = static_cast<float>(AreaOf(plane.slope, ground.cell_side));
 }
 

@@ -27,6 +27,7 @@ struct GroundCell {
   float gsd = 0;       // units a pixel on it, of the nearest picture
   float area = 0;      // units^2 of surface, along its slope
   uint16_t count = 0;  // points of enough confidence
+  bool is_coherent = false;  // its points lie on one surface with those around
   bool is_covered = false;
   bool is_thin = false;       // not covered, yet with too many points to call it a gap
   bool is_from_afar = false;  // covered by what farther pictures than usual can give
@@ -78,13 +79,14 @@ void AddPoint(const SurfacePoint& point, Ground* ground);
 void AddHint(const Eigen::Vector3d& xyz, Ground* ground);
 
 // To be called once, after all points: heights, areas and which cells are covered. A cell is
-// covered when it, or it and its neighbours together, hold 0.7 of the points that the spacing asks
+// covered when it, or it and its neighbours together, hold 0.6 of the points that the spacing asks
 // for on a surface of that slope (measured: so the share is that of the surface with a point within
-// two GSD); with half of them it is thin. Either needs neighbours that lie on one surface with it.
+// two GSD); with 0.43 of them it is thin. Either needs neighbours that lie on one surface with it.
 // Threads: any number, the same result.
 void FinishPoints(int num_threads, Ground* ground);
 
-// Height and area of a cell without points, from the predicted surface.
+// Area of a cell that is not covered, from the predicted surface, and its height, but where its own
+// points lie on one surface with their neighbours.
 void PredictCell(const Ground& ground, const GroundLayer& layer, int x, int y, GroundCell* cell);
 
 // Points of the (2 reach + 1)^2 cells around one.
@@ -92,6 +94,6 @@ int CountAround(const GroundLayer& layer, int x, int y, int reach);
 
 // Points that the spacing asks for on an area.
 double WantedPoints(double area, double spacing);
-inline constexpr double kCoveredShare = 0.7, kThinShare = 0.5;
+inline constexpr double kCoveredShare = 0.6, kThinShare = 0.43;
 
 }  // namespace colmap_seapoint

@@ -16,8 +16,10 @@
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/image/image_file.h"
+#include "densify/completeness/completeness_options.h"
 #include "densify/completeness/surface/asked_area.h"
 #include "examples/benchmarks/completeness/gap_truth.h"
+#include "examples/benchmarks/completeness/peer_maps.h"
 #include "examples/subcommands.h"
 
 namespace colmap_seapoint {
@@ -116,21 +118,29 @@ int Cover(const std::vector<std::string>& arguments) {
 }
 
 struct ReportedGaps {
-  double spacing = 0, gsd = 0, covered_share = 0;
+  double spacing = 0, covered_share = 0, tolerance = 0;
   struct One {
-    std::string cause;
+    GapCause cause;
     AskedArea area;
   };
   std::vector<One> gaps;
 };
 
+GapCause CauseOfName(const std::string& name) {
+  for (int i = 0; i < kNumGapCauses; ++i) {
+    if (name == GapCauseName(static_cast<GapCause>(i))) return static_cast<GapCause>(i);
+  }
+  throw Error(name, "is no cause of a gap", "give a report of this program");
+}
+
 ReportedGaps ReadReported(const SurveyTruth& truth, const fs::path& path) {
   std::ifstream in(path / "completeness.json");
   const Json json = Json::parse(in);
-  ReportedGaps reported{json.at("spacing"), json.at("gsd"), json.at("covered_share"), {}};
+  ReportedGaps reported{
+      json.at("spacing"), json.at("covered_share"), json.at("covered_share_tolerance"), {}};
   for (const Json& gap : json.at("gaps")) {
     if (gap.at("layer") != "top") continue;
-    ReportedGaps::One one{gap.at("cause"), {}};
+    ReportedGaps::One one{CauseOfName(gap.at("cause")), {}};
     for (const Json& ring : gap.at("outline")) {
       Ring& corners = one.area.rings.emplace_back();
       for (const Json& p : ring) {
@@ -159,8 +169,7 @@ void DrawScore(const GapTruth& truth, const std::vector<int>& owner, const Repor
       if (cell.is_gap && g < 0) rgb = {255, 0, 0};
       if (!is_missing && g >= 0) rgb = {60, 60, 255};
       if (is_missing && g >= 0) {
-        const bool is_right =
-            reported.gaps[static_cast<size_t>(g)].cause == GapCauseName(cell.cause);
+        const bool is_right = cell.IsRight(reported.gaps[static_cast<size_t>(g)].cause);
         rgb = is_right ? std::array<uint8_t, 3>{0, 180, 0} : std::array<uint8_t, 3>{240, 220, 0};
       }
       for (int c = 0; c < 3; ++c) picture.At(i, truth.ny - 1 - j, c) = rgb[static_cast<size_t>(c)];
@@ -209,14 +218,18 @@ void TallyReported(const TruthCell& cell, const std::string& said, double area, 
   }
 }
 
-// `said`: "-" where no gap was reported.
-void TallyGap(const std::string& cause, const std::string& said, double area, Tallies* t) {
+// `said`: kNone where no gap was reported.
+void TallyGap(const TruthCell& cell, GapCause said, double area, Tallies* t) {
+  const std::string cause = GapCauseName(cell.cause);
+  const bool is_found = said != GapCause::kNone;
   for (Tally* tally : {&t->all, &t->by_cause[cause]}) {
     tally->truth += area;
-    if (said != "-") tally->found += area;
-    if (said == cause) tally->right_cause += area;
+    if (is_found) tally->found += area;
+    if (is_found && cell.IsRight(said)) tally->right_cause += area;
   }
-  t->confusion[{cause, said}] += area;
+  if (!is_found || !cell.IsRight(said)) {
+    t->confusion[{cause, is_found ? GapCauseName(said) : "-"}] += area;
+  }
 }
 
 Tallies TallyCells(const GapTruth& truth, const std::vector<int>& owner,
@@ -227,10 +240,10 @@ Tallies TallyCells(const GapTruth& truth, const std::vector<int>& owner,
     const TruthCell& cell = truth.cells[k];
     if (cell.is_expected) tallies.expected += cell.area;
     if (cell.is_covered) tallies.covered += cell.area;
-    const std::string said =
-        owner[k] < 0 ? "-" : reported.gaps[static_cast<size_t>(owner[k])].cause;
-    if (owner[k] >= 0) TallyReported(cell, said, area, &tallies);
-    if (cell.is_gap) TallyGap(GapCauseName(cell.cause), said, area, &tallies);
+    const GapCause said =
+        owner[k] < 0 ? GapCause::kNone : reported.gaps[static_cast<size_t>(owner[k])].cause;
+    if (owner[k] >= 0) TallyReported(cell, GapCauseName(said), area, &tallies);
+    if (cell.is_gap) TallyGap(cell, said, area, &tallies);
   }
   return tallies;
 }
@@ -246,7 +259,7 @@ void PrintTallies(const Tallies& tallies) {
   for (const auto& [name, tally] : tallies.by_cause) PrintRow(name.c_str(), tally);
   PrintRow("all", tallies.all);
   for (const auto& [pair, area] : tallies.confusion) {
-    if (area > 0.01 * tallies.all.truth && pair.first != pair.second) {
+    if (area > 0.01 * tallies.all.truth) {
       std::printf("   %s said to be %s: %.3f m2\n", pair.first.c_str(), pair.second.c_str(), area);
     }
   }
@@ -268,17 +281,24 @@ int Score(const std::vector<std::string>& arguments) {
   const PlantedGaps planted = planted_path.empty()
                                   ? PlantedGaps()
                                   : ReadPlantedGaps(fs::path(planted_path) / "planted.json");
-  std::vector<Eigen::Vector3f> points;
-  for (const CloudPoint& p : ReadCloud(cloud_path)) points.push_back(p.xyz);
-  const GapTruth gaps = MeasureGapTruth(truth, planted, reported.spacing,
-                                        reported.spacing / reported.gsd, points, -1);
+  std::vector<Eigen::Vector3f> points, sure;
+  const CompletenessOptions defaults;
+  for (const CloudPoint& p : ReadCloud(cloud_path)) {
+    points.push_back(p.xyz);
+    if (p.confidence >= defaults.min_confidence) sure.push_back(p.xyz);
+  }
+  const GapTruth gaps = MeasureGapTruth(truth, planted, sure, -1);
   const std::vector<int> owner = OwnersOf(gaps, reported);
   if (!picture_path.empty()) DrawScore(gaps, owner, reported, picture_path);
   const Tallies tallies = TallyCells(gaps, owner, reported);
   PrintTallies(tallies);
-  std::printf("covered share: said %.2f %%, true %.2f %% (spacing %.3f gsd)\n",
-              100 * reported.covered_share, 100 * tallies.covered / tallies.expected,
-              reported.spacing / truth.gsd);
+  std::printf("falsely covered: ours %.3f m2, footprints %.3f m2, views of points %.3f m2\n",
+              tallies.all.truth - tallies.all.found,
+              FalselyCovered(gaps, FootprintMap(truth, planted, gaps)),
+              FalselyCovered(gaps, ViewsMap(truth, points, gaps)));
+  std::printf("covered share: said %.2f +- %.2f %%, true %.2f %% (spacing: said %.4f, true %.4f)\n",
+              100 * reported.covered_share, 100 * reported.tolerance,
+              100 * tallies.covered / tallies.expected, reported.spacing, gaps.spacing);
   return 0;
 }
 

@@ -7,6 +7,7 @@
 
 #include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/compare/point_index.h"
+#include "densify/match/cell_grid.h"
 #include "examples/survey/paths/survey_camera.h"
 #include "examples/survey/visibility.h"
 
@@ -17,15 +18,13 @@ namespace {
 constexpr double kCoveredGsd = 2, kCoveredSpacings = 1.5;
 const double kMinParallax = std::cos(2 * 3.14159265358979323846 / 180);
 
-enum class Kind { kGood, kBlurred, kLost, kRemoved, kHidden };
+enum class Kind { kGood, kBlurred, kLost, kRemoved, kHidden, kEdge };
+// Pixels from the edge of a picture within which no window of correlation fits: seen, not measured.
+constexpr double kEdgeWidth = 12;
 
-// What no two good pictures see from two sides, and none from nearer than so many times the
-// survey's own GSD, is background.
-constexpr double kFarForOne = 2;
-// Where of what two see less than half as much is covered as at the survey's own GSD and nearer.
-constexpr double kFar = 1.1 * 1.1 * 1.1 * 1.1, kWindow = 1.1 * 1.1 * 1.1, kMostlyNothing = 0.5;
-constexpr double kMinAreaShare = 0.005;
-constexpr int kScaleStep = 7;  // every so many cells both ways tell the survey's own GSD
+// What no picture sees from nearer than so many times the survey's own GSD is background.
+constexpr double kFar = 2;
+constexpr int kScaleCells = 7;  // places of so many cells both ways tell the survey's own GSD
 
 struct Seen {
   Kind kind;
@@ -68,6 +67,11 @@ double NearestGsd(const std::vector<Seen>& seen) {
   return nearest;
 }
 
+bool IsAtEdge(const Camera& camera, const Eigen::Vector2d& pixel) {
+  return pixel.x() < kEdgeWidth || pixel.y() < kEdgeWidth ||
+         pixel.x() > camera.width - kEdgeWidth || pixel.y() > camera.height - kEdgeWidth;
+}
+
 class CellTruth {
  public:
   CellTruth(const SurveyTruth& truth, const PlantedGaps& gaps)
@@ -89,7 +93,9 @@ class CellTruth {
       const Eigen::Vector3d toward = (center - hit.xyz).normalized();
       const double gsd = GsdAt(camera.InWater(), image.cam_from_world * hit.xyz) /
                          std::sqrt(std::max(0.17, hit.normal.dot(toward)));
-      seen.push_back({is_visible ? KindOf(image.name) : Kind::kHidden, toward, gsd});
+      Kind kind = is_visible ? KindOf(image.name) : Kind::kHidden;
+      if (kind == Kind::kGood && IsAtEdge(camera.InWater(), *pixel)) kind = Kind::kEdge;
+      seen.push_back({kind, toward, gsd});
     }
     return seen;
   }
@@ -107,9 +113,16 @@ class CellTruth {
     if (is_hidden && HasPair(seen, {Kind::kGood, Kind::kBlurred, Kind::kHidden})) {
       return GapCause::kOccluded;
     }
-    if (Has(seen, Kind::kGood) || Has(seen, Kind::kBlurred)) return GapCause::kImagedOnce;
+    if (Has(seen, Kind::kGood) || Has(seen, Kind::kBlurred) || Has(seen, Kind::kEdge)) {
+      return GapCause::kImagedOnce;
+    }
     if (Has(seen, Kind::kLost)) return GapCause::kPoseLost;
     return is_hidden ? GapCause::kOccluded : GapCause::kNeverImaged;
+  }
+  bool IsPlantedAt(const Eigen::Vector2d& place) const {
+    const auto contains = [&](const Disc& disc) { return disc.Contains(place); };
+    return std::any_of(gaps_.smooth.begin(), gaps_.smooth.end(), contains) ||
+           std::any_of(gaps_.moving.begin(), gaps_.moving.end(), contains);
   }
   static bool Has(const std::vector<Seen>& seen, Kind kind) {
     for (const Seen& s : seen) {
@@ -131,21 +144,22 @@ class CellTruth {
   std::map<uint32_t, PortCamera> cameras_;
 };
 
-double AreaOf(const SurveyTruth& truth, const GapTruth& result, const Eigen::Vector2d& place) {
-  return result.side * result.side /
-         std::max(0.1, truth.surface.Ground().Normal(place.x(), place.y()).z());
+// Along the surface, of a square of that side on the plan.
+double AreaOf(const SurveyTruth& truth, double side, const Eigen::Vector2d& place) {
+  return side * side / std::max(0.1, truth.surface.Ground().Normal(place.x(), place.y()).z());
 }
 
 // Median over the points that the survey's pictures can give: near places give more of them.
-double SurveyGsd(const SurveyTruth& truth, const CellTruth& cells, const GapTruth& result) {
+double SurveyGsd(const SurveyTruth& truth, const CellTruth& cells) {
+  const GridSpec& grid = truth.surface.Ground().Grid();
+  const double side = kScaleCells * 2 * truth.gsd;
   std::map<double, double> weights;
   double total = 0;
-  for (int j = 0; j < result.ny; j += kScaleStep) {
-    for (int i = 0; i < result.nx; i += kScaleStep) {
-      const Eigen::Vector2d place = result.Place(i, j);
-      const double gsd = BestPairGsd(cells.SeenAt(truth.surface.GroundAt(place.x(), place.y())));
+  for (double y = grid.MinY() + 0.5 * side; y < grid.MaxY(); y += side) {
+    for (double x = grid.MinX() + 0.5 * side; x < grid.MaxX(); x += side) {
+      const double gsd = BestPairGsd(cells.SeenAt(truth.surface.GroundAt(x, y)));
       if (gsd == kBeyond) continue;
-      const double weight = AreaOf(truth, result, place) / (gsd * gsd);
+      const double weight = AreaOf(truth, side, {x, y}) / (gsd * gsd);
       weights[gsd] += weight;
       total += weight;
     }
@@ -155,45 +169,7 @@ double SurveyGsd(const SurveyTruth& truth, const CellTruth& cells, const GapTrut
     below += weight;
     if (2 * below >= total) return gsd;
   }
-  return kBeyond;
-}
-
-// What decides whether a cell is background.
-struct Distance {
-  double gsd = 0;  // of the nearest picture
-  bool has_pair = false;
-};
-
-double LimitOfSight(double survey_gsd, const GapTruth& result,
-                    const std::vector<Distance>& distances) {
-  const auto covered_between = [&](double from, double to) {
-    std::pair<double, double> areas;  // all, covered
-    for (size_t k = 0; k < distances.size(); ++k) {
-      const TruthCell& cell = result.cells[k];
-      if (!cell.is_expected || !distances[k].has_pair) continue;
-      if (distances[k].gsd <= from || distances[k].gsd > to) continue;
-      areas.first += cell.area;
-      areas.second += cell.is_covered ? cell.area : 0;
-    }
-    return areas;
-  };
-  const auto all = covered_between(0, kBeyond), near = covered_between(0, survey_gsd);
-  for (double from = kFar * survey_gsd; from < 400 * survey_gsd; from *= 1.1) {
-    const auto [seen, covered] = covered_between(from, kWindow * from);
-    if (seen < kMinAreaShare * all.first) continue;
-    if (covered / seen < kMostlyNothing * near.second / near.first) return from;
-  }
-  return kBeyond;
-}
-
-void LeaveOutBackground(double survey_gsd, const std::vector<Distance>& distances,
-                        GapTruth* result) {
-  const double limit = LimitOfSight(survey_gsd, *result, distances);
-  const double limit_for_one = std::min(limit, kFarForOne * survey_gsd);
-  for (size_t k = 0; k < distances.size(); ++k) {
-    if (distances[k].gsd <= (distances[k].has_pair ? limit : limit_for_one)) continue;
-    result->cells[k].is_expected = result->cells[k].is_covered = false;
-  }
+  return truth.gsd;
 }
 
 void MarkGaps(double min_area, GapTruth* result) {
@@ -226,11 +202,15 @@ void MarkGaps(double min_area, GapTruth* result) {
 
 }  // namespace
 
-GapTruth MeasureGapTruth(const SurveyTruth& truth, const PlantedGaps& gaps, double spacing,
-                         double step, const std::vector<Eigen::Vector3f>& points, int num_threads) {
+GapTruth MeasureGapTruth(const SurveyTruth& truth, const PlantedGaps& gaps,
+                         const std::vector<Eigen::Vector3f>& points, int num_threads) {
   const GridSpec& grid = truth.surface.Ground().Grid();
+  const CellTruth cell_truth(truth, gaps);
+  const int step = SampleStep(truth.model.cameras.begin()->second, 0);
   GapTruth result;
-  result.side = 2 * spacing;
+  result.survey_gsd = SurveyGsd(truth, cell_truth);
+  result.spacing = result.survey_gsd * step;
+  result.side = 2 * result.spacing;
   result.min_x = grid.MinX();
   result.min_y = grid.MinY();
   result.nx = static_cast<int>((grid.MaxX() - grid.MinX()) / result.side);
@@ -239,9 +219,6 @@ GapTruth MeasureGapTruth(const SurveyTruth& truth, const PlantedGaps& gaps, doub
   PointVector places;
   for (const Eigen::Vector3f& p : points) places.push_back(p.cast<double>());
   const PointIndex index(places);
-  const CellTruth cell_truth(truth, gaps);
-  const double survey_gsd = SurveyGsd(truth, cell_truth, result);
-  std::vector<Distance> distances(result.cells.size());
   ParallelFor(num_threads, result.ny, [&](int64_t row) {
     const int j = static_cast<int>(row);
     for (int i = 0; i < result.nx; ++i) {
@@ -249,23 +226,21 @@ GapTruth MeasureGapTruth(const SurveyTruth& truth, const PlantedGaps& gaps, doub
       const SurfaceHit hit = truth.surface.GroundAt(place.x(), place.y());
       TruthCell& cell = result.At(i, j);
       const std::vector<Seen> seen = cell_truth.SeenAt(hit);
-      cell.is_expected = !seen.empty();
-      if (!cell.is_expected) continue;
-      cell.area = AreaOf(truth, result, place);
+      if (seen.empty()) continue;
+      cell.area = AreaOf(truth, result.side, place);
       double squared = kBeyond;
       index.Nearest(hit.xyz, NearestOf::kAnyPoint, &squared);
       const double pair_gsd = BestPairGsd(seen);
-      const bool has_pair = pair_gsd < kBeyond;
-      distances[static_cast<size_t>(j * result.nx + i)] = {NearestGsd(seen), has_pair};
-      const double gsd = std::max(survey_gsd, has_pair ? pair_gsd : 0);
-      const double radius =
-          std::max(kCoveredGsd * gsd, kCoveredSpacings * std::max(spacing, gsd * step));
+      const double gsd = std::max(result.survey_gsd, pair_gsd < kBeyond ? pair_gsd : 0);
+      const double radius = std::max(kCoveredGsd, kCoveredSpacings * step) * gsd;
       cell.is_covered = squared <= radius * radius;
-      if (!cell.is_covered) cell.cause = cell_truth.CauseAt(seen, place);
+      cell.is_expected = cell.is_covered || NearestGsd(seen) <= kFar * result.survey_gsd;
+      if (cell.is_covered) continue;
+      cell.cause = cell_truth.CauseAt(seen, place);
+      cell.is_planted = cell_truth.IsPlantedAt(place);
     }
   });
-  LeaveOutBackground(survey_gsd, distances, &result);
-  MarkGaps(100 * spacing * spacing, &result);
+  MarkGaps(100 * result.spacing * result.spacing, &result);
   return result;
 }
 

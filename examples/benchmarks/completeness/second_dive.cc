@@ -66,18 +66,13 @@ int Join(const std::vector<std::string>& arguments) {
 }
 
 // The gaps of a report's top layer, on the ground's plan; a gap is within an odd number of rings.
-struct Report {
-  double spacing = 0, gsd = 0;
-  std::vector<AskedArea> gaps;
-};
-
-Report ReadReport(const SurveyTruth& truth, const fs::path& folder) {
+std::vector<AskedArea> ReadGaps(const SurveyTruth& truth, const fs::path& folder) {
   std::ifstream in(folder / "completeness.json");
   const Json json = Json::parse(in);
-  Report report{json.at("spacing"), json.at("gsd"), {}};
+  std::vector<AskedArea> gaps;
   for (const Json& gap : json.at("gaps")) {
     if (gap.at("layer") != "top") continue;
-    AskedArea& area = report.gaps.emplace_back();
+    AskedArea& area = gaps.emplace_back();
     for (const Json& ring : gap.at("outline")) {
       Ring& corners = area.rings.emplace_back();
       for (const Json& p : ring) {
@@ -85,14 +80,14 @@ Report ReadReport(const SurveyTruth& truth, const fs::path& folder) {
       }
     }
   }
-  return report;
+  return gaps;
 }
 
-GapTruth TruthOf(const SurveyTruth& truth, const PlantedGaps& planted, const Report& report,
+GapTruth TruthOf(const SurveyTruth& truth, const PlantedGaps& planted,
                  const std::string& cloud_path) {
   std::vector<Eigen::Vector3f> points;
   for (const CloudPoint& point : ReadCloud(cloud_path)) points.push_back(point.xyz);
-  return MeasureGapTruth(truth, planted, report.spacing, report.spacing / report.gsd, points, -1);
+  return MeasureGapTruth(truth, planted, points, -1);
 }
 
 int Closed(const std::vector<std::string>& arguments) {
@@ -108,17 +103,17 @@ int Closed(const std::vector<std::string>& arguments) {
   if (!ParseOptions(description, arguments)) return 0;
   const SurveyTruth truth = ReadSurveyTruth(survey_path);
   const PlantedGaps planted = ReadPlantedGaps(fs::path(planted_path) / "planted.json");
-  const Report report = ReadReport(truth, report_path);
-  const GapTruth before = TruthOf(truth, planted, report, before_path);
-  const GapTruth after = TruthOf(truth, planted, report, cloud_path);
+  const std::vector<AskedArea> gaps = ReadGaps(truth, report_path);
+  const GapTruth before = TruthOf(truth, planted, before_path);
+  const GapTruth after = TruthOf(truth, planted, cloud_path);
   double reported = 0, open = 0, closed = 0, missing = 0, found_later = 0;
   for (size_t k = 0; k < before.cells.size(); ++k) {
     const TruthCell& cell = before.cells[k];
     if (!cell.is_expected) continue;
     const auto i = static_cast<int>(k) % before.nx, j = static_cast<int>(k) / before.nx;
     const Eigen::Vector2d place = before.Place(i, j);
-    const bool is_reported = std::any_of(report.gaps.begin(), report.gaps.end(),
-                                         [&](const auto& gap) { return gap.Contains(place); });
+    const bool is_reported =
+        std::any_of(gaps.begin(), gaps.end(), [&](const auto& gap) { return gap.Contains(place); });
     const bool is_covered = after.cells[k].is_covered;
     if (is_reported) {
       reported += cell.area;

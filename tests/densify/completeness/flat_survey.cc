@@ -8,16 +8,6 @@ namespace {
 
 constexpr int kWidth = 320, kHeight = 240;
 
-int TimesSeen(const SparseModel& model, const Eigen::Vector3d& place) {
-  int count = 0;
-  for (const PosedImage& image : model.images) {
-    const Camera& camera = model.cameras.at(image.camera_id);
-    const auto pixel = camera.ImgFromCam(image.cam_from_world * place);
-    count += pixel && camera.InImage(*pixel) ? 1 : 0;
-  }
-  return count;
-}
-
 std::vector<Eigen::Vector3d> Lattice(const SparseModel& model, double step) {
   Eigen::Vector3d low(1e9, 1e9, 0), high = -low;
   for (const PosedImage& image : model.images) {
@@ -33,6 +23,17 @@ std::vector<Eigen::Vector3d> Lattice(const SparseModel& model, double step) {
 }
 
 }  // namespace
+
+int TimesSeen(const SparseModel& model, const Eigen::Vector3d& place, double margin) {
+  int count = 0;
+  for (const PosedImage& image : model.images) {
+    const Camera& camera = model.cameras.at(image.camera_id);
+    const auto pixel = camera.ImgFromCam(image.cam_from_world * place);
+    const Eigen::Vector2d inset(margin, margin);
+    count += pixel && camera.InImage(*pixel + inset) && camera.InImage(*pixel - inset) ? 1 : 0;
+  }
+  return count;
+}
 
 SparseModel MakeFlatSurvey(const FlatSurveyOptions& options) {
   SparseModel model;
@@ -95,13 +96,18 @@ CompletenessInput FlatInput(const SparseModel& model, const KeepPoint& keep) {
   return input;
 }
 
-double AreaSeen(const SparseModel& model, int times) {
+double AreaWhere(const SparseModel& model,
+                 const std::function<bool(const Eigen::Vector3d&)>& holds) {
   constexpr double kStep = 0.05;
   double area = 0;
   for (const Eigen::Vector3d& place : Lattice(model, kStep)) {
-    area += TimesSeen(model, place) >= times ? kStep * kStep : 0;
+    area += holds(place) ? kStep * kStep : 0;
   }
   return area;
+}
+
+double AreaSeen(const SparseModel& model, int times) {
+  return AreaWhere(model, [&](const auto& place) { return TimesSeen(model, place) >= times; });
 }
 
 double AreaOf(const CompletenessResult& result, GapCause cause) {

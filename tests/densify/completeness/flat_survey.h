@@ -24,6 +24,11 @@ using KeepPoint = std::function<bool(const Eigen::Vector2d&)>;
 // Everything but the cloud's and pictures' faults: a point at every GSD that two pictures of the
 // model see, if `keep` lets it; pictures of full texture.
 CompletenessInput FlatInput(const SparseModel& model, const KeepPoint& keep);
+// Pictures that hold a place that many pixels from their edges.
+int TimesSeen(const SparseModel& model, const Eigen::Vector3d& place, double margin = 0);
+// Area (plan) of the seabed about the model where that holds.
+double AreaWhere(const SparseModel& model,
+                 const std::function<bool(const Eigen::Vector3d&)>& holds);
 // Area (plan) that pictures of the model see this often at least.
 double AreaSeen(const SparseModel& model, int times);
 

@@ -78,7 +78,7 @@ TEST(JudgePictures, BlurredAmongSharpOnes) {
 
 TEST(FindLostRuns, ByNaturalOrderAndFolder) {
   const auto runs = FindLostRuns({"a/img1.jpg", "a/img4.jpg", "b/img1.jpg"},
-                                 {"a/img10.jpg", "a/img2.jpg", "a/img3.jpg", "c/x.jpg"});
+                                 {"a/img10.jpg", "a/img2.jpg", "a/img3.jpg", "c/x.jpg"}, {});
   ASSERT_EQ(runs.size(), 3u);
   EXPECT_EQ(runs[0].names, (std::vector<std::string>{"a/img2.jpg", "a/img3.jpg"}));
   EXPECT_EQ(runs[0].before, 0);
@@ -88,6 +88,26 @@ TEST(FindLostRuns, ByNaturalOrderAndFolder) {
   EXPECT_EQ(runs[1].after, -1);
   EXPECT_EQ(runs[2].before, -1);
   EXPECT_EQ(runs[2].after, -1);
+}
+
+TEST(FindLostRuns, ATrackThatGoesOnInAnotherModelIsNoPlace) {
+  // 1 is here, 2 and 5 are lost, 3 is in another model, 4 and 6 are here.
+  const auto runs = FindLostRuns({"1.jpg", "4.jpg", "6.jpg"}, {"2.jpg", "5.jpg"}, {"3.jpg"});
+  ASSERT_EQ(runs.size(), 2u);
+  EXPECT_EQ(runs[0].before, 0);
+  EXPECT_EQ(runs[0].after, -1);
+  EXPECT_EQ(runs[1].before, 1);
+  EXPECT_EQ(runs[1].after, 2);
+}
+
+TEST(ShowsAnother, BeforeOrBehindThePlace) {
+  DepthCells depths(4, 3);
+  depths.At(1, 1) = 5;
+  const Eigen::Vector2d there(1.5 * kDepthCell, 1.5 * kDepthCell);
+  EXPECT_FALSE(ShowsAnother(depths, {1, 1}, 5, 0.1));  // nothing is drawn there
+  EXPECT_FALSE(ShowsAnother(depths, there, 5.05, 0.1));
+  EXPECT_TRUE(ShowsAnother(depths, there, 6, 0.1));
+  EXPECT_TRUE(ShowsAnother(depths, there, 4, 0.1));
 }
 
 class Causes : public testing::Test {
@@ -117,6 +137,9 @@ TEST_F(Causes, InOrder) {
   EXPECT_EQ(MedianTexture({See(K::kGood, 0, 3)}), kUnknownTexture);
   EXPECT_EQ(Of({See(K::kGood, 0), See(K::kBad, 9)}), GapCause::kBadPicture);
   EXPECT_EQ(Of({See(K::kGood, 0), See(K::kHidden, 9)}), GapCause::kOccluded);
+  // What is seen at the edge of a picture is in no window of correlation.
+  EXPECT_EQ(Of({See(K::kGood, 0), See(K::kEdge, 9)}), GapCause::kImagedOnce);
+  EXPECT_EQ(Of({See(K::kEdge, 9)}), GapCause::kImagedOnce);
   EXPECT_EQ(Of({See(K::kHidden, 9)}), GapCause::kOccluded);
   EXPECT_EQ(Of({See(K::kMasked, 9), See(K::kMasked, 0)}), GapCause::kOutOfArea);
   // GSD 1 + angle. Of 0, 9 and 4 degrees: 10 over 9, 5 over 4, 10 over 5 degrees.

@@ -6,6 +6,7 @@
 
 #include "densify/completeness/gaps/gap_regions.h"
 #include "densify/completeness/gaps/merge_gaps.h"
+#include "densify/completeness/outline.h"
 #include "densify/completeness/surface/asked_area.h"
 #include "densify/completeness/surface/plan_frame.h"
 #include "densify/completeness/surface/plane_pyramid.h"
@@ -167,34 +168,102 @@ TEST(MergeIntoPasses, WhatOnePassPhotographsIsOneGap) {
   EXPECT_EQ(merged.regions[3].cause, GapCause::kNoTexture);
 }
 
-// Rows of cells that two pictures see, the farther the larger y.
-Ground Rows(int num_rows, int last_covered_row) {
+TEST(LeaveOutBackground, WhatAllPicturesSeeFromFarAway) {
   Ground ground;
   GroundLayer& top = ground.LayerAt({Side::kTop, 0});
-  for (int y = 0; y < num_rows; ++y) {
+  for (int y = 0; y < 64; ++y) {  // the farther the larger y: a GSD of 2 at 30
     for (int x = 0; x < 64; ++x) {
       GroundCell& cell = top.cells.At(x, y);
-      cell.is_expected = cell.has_pair = true;
-      cell.area = 1;
+      cell.is_expected = true;
       cell.gsd = static_cast<float>(0.5 + 0.05 * y);
-      cell.is_covered = cell.is_from_afar = y <= last_covered_row;
+      cell.is_covered = x == 7;
+      cell.cause = cell.is_covered ? GapCause::kNone : GapCause::kImagedOnce;
     }
   }
-  return ground;
+  LeaveOutBackground(1, &ground);
+  EXPECT_TRUE(top.cells.Find(5, 29)->is_expected);
+  EXPECT_FALSE(top.cells.Find(5, 32)->is_expected);
+  EXPECT_EQ(top.cells.Find(5, 32)->cause, GapCause::kImagedOnce);
+  EXPECT_TRUE(top.cells.Find(7, 60)->is_expected);
 }
 
-TEST(LimitOfSight, WhereLessThanHalfAsMuchIsCovered) {
-  Ground ground = Rows(64, 39);  // up to a GSD of 2.45
-  const double limit = LimitOfSight(1, ground);
-  EXPECT_GT(limit, 2.45 / 1.3);
-  EXPECT_LT(limit, 2.45 * 1.1);
-  LeaveOutBackground(1, &ground);
-  const TiledGrid<GroundCell>& cells = ground.LayerAt({Side::kTop, 0}).cells;
-  EXPECT_TRUE(cells.Find(0, 20)->is_expected);
-  EXPECT_FALSE(cells.Find(0, 50)->is_expected);
-  // All is covered; or only what is near is missing.
-  EXPECT_TRUE(std::isinf(LimitOfSight(1, Rows(64, 63))));
-  EXPECT_TRUE(std::isinf(LimitOfSight(1, Rows(10, 5))));
+TEST(JudgeUnseen, AnEnclosedSlitIsAHoleAndANotchIsNone) {
+  Ground ground;
+  GroundLayer& top = ground.LayerAt({Side::kTop, 0});
+  const auto is_slit = [](int x, int y) { return x >= 200 && x < 214 && y >= 100 && y < 300; };
+  const auto is_notch = [](int x, int y) { return x >= 90 && x < 110 && y < 20; };
+  for (int y = 0; y < 400; ++y) {
+    for (int x = 0; x < 400; ++x) {
+      if (is_slit(x, y) || is_notch(x, y)) continue;
+      GroundCell& cell = top.cells.At(x, y);
+      cell.is_expected = true;
+      cell.gsd = 1;
+    }
+  }
+  top.surface.Add(200, 200, 0, 1);
+  top.surface.Finish();
+  JudgeUnseen({300, 2}, nullptr, LostSight({}, {}, 1), &ground);
+  for (int y = 104; y < 296; ++y) {
+    EXPECT_EQ(top.cells.Find(207, y)->cause, GapCause::kNeverImaged) << y;
+  }
+  EXPECT_FALSE(top.cells.Find(100, 5)->is_expected);
+}
+
+TEST(LeaveOutIslands, WhatIsFarFromTheSurveyAndHardlyCovered) {
+  Ground ground;
+  GroundLayer& top = ground.LayerAt({Side::kTop, 0});
+  // From x0 on: so many columns of 100 rows, of which the first ones are covered.
+  const auto add = [&](int x0, int num_columns, int num_covered) {
+    for (int y = 0; y < 100; ++y) {
+      for (int x = x0; x < x0 + num_columns; ++x) {
+        GroundCell& cell = top.cells.At(x, y);
+        cell.is_expected = true;
+        cell.is_covered = x < x0 + num_covered;
+        cell.area = 1;
+      }
+    }
+  };
+  add(0, 100, 20);   // the survey itself
+  add(320, 60, 10);  // an island
+  add(640, 60, 30);  // an island that is a part of it
+  LeaveOutIslands(&ground);
+  EXPECT_TRUE(top.cells.Find(90, 50)->is_expected);
+  EXPECT_FALSE(top.cells.Find(370, 50)->is_expected);
+  EXPECT_TRUE(top.cells.Find(322, 50)->is_expected);
+  EXPECT_TRUE(top.cells.Find(690, 50)->is_expected);
+}
+
+// Faces of any steepness lie evenly; heights by chance do not.
+TEST(FinishPoints, SteepFacesAreSurfacesAndChanceIsNone) {
+  const auto covered_share = [](const auto& height) {
+    Ground ground;
+    ground.cell_side = 2;
+    for (int y = 0; y < 80; ++y) {
+      for (int x = 0; x < 80; ++x) {
+        // As many as lie on the face, where it is steep.
+        for (int k = 0; k < 4; ++k) {
+          AddPoint({{x + 0.125 + 0.25 * k, y + 0.5, height(x + 0.125 + 0.25 * k, y + 0.5)},
+                    Eigen::Vector3d::UnitZ()},
+                   &ground);
+        }
+      }
+    }
+    FinishPoints(1, &ground);
+    int num_covered = 0;
+    ground.LayerAt({Side::kTop, 0}).cells.ForEach([&](int x, int y, const GroundCell& cell) {
+      if (x > 0 && y > 0 && x < 39 && y < 39) num_covered += cell.is_covered ? 1 : 0;
+    });
+    return num_covered / (38.0 * 38.0);
+  };
+  EXPECT_EQ(covered_share([](double, double) { return 0.0; }), 1);
+  EXPECT_EQ(covered_share([](double x, double) { return 3 * x; }), 1);
+  const auto chance = [](double x, double y) {  // one height a cell
+    uint32_t h = static_cast<uint32_t>(x / 2) * 7919u + static_cast<uint32_t>(y / 2) * 104729u;
+    h = (h ^ (h >> 15)) * 0x2c1b3c6du;
+    h = (h ^ (h >> 12)) * 0x297a2d39u;
+    return 100.0 * (h >> 16) / 65536;
+  };
+  EXPECT_LT(covered_share(chance), 0.05);
 }
 
 TEST(ReliableTexture, NineTenthsOfTheBest) {
