@@ -14,6 +14,7 @@
 #include "densify/sequence/picture_cache.h"
 #include "densify/sequence/track.h"
 #include "densify/sequence_report.h"
+#include "densify/sequence_scope.h"
 
 namespace colmap_seapoint {
 
