@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "densify/overlap/earlier_surface.h"
 #include "densify/overlap/influence_mask.h"
 #include "densify/overlap/packed_footprint.h"
 #include "densify/partial_densification_options.h"
@@ -14,7 +15,6 @@
 #include "densify/sequence/picture_cache.h"
 #include "densify/sequence/track.h"
 #include "densify/sequence_report.h"
-#include "densify/sequence_scope.h"
 
 namespace colmap_seapoint {
 

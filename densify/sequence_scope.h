@@ -2,16 +2,14 @@
 // block (ours). Internal.
 #pragma once
 
-#include "densify/densify_sequence.h"
+#include "colmap_seapoint/base/sparse_model.h"
+#include "colmap_seapoint/base/stereo_rig.h"
 #include "densify/overlap/earlier_surface.h"
+#include "densify/partial_densification_options.h"
+#include "densify/sequence/picture_source.h"
+#include "densify/sequence_report.h"
 
 namespace colmap_seapoint {
-
-// Which pictures of a model begin pairs. Any picture may complete a pair.
-struct SequenceScope {
-  EarlierSurface earlier;
-  int block = 1, num_blocks = 1;  // of the track, cut into parts of as many pictures
-};
 
 // Whether a cloud of these options can be added to, or made block by block: it takes the completion
 // pass, which knows what is covered.
