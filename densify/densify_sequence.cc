@@ -14,6 +14,7 @@
 #include "densify/sequence/partners.h"
 #include "densify/sequence/picture_order.h"
 #include "densify/sequence/triangulate_matches.h"
+#include "densify/sequence_scope.h"
 
 namespace colmap_seapoint {
 
@@ -314,10 +315,16 @@ bool CanBeDensifiedInParts(const PartialDensificationOptions& options) {
          !options.write_debug;
 }
 
-SequenceReport DensifySequence(const SparseModel& given_model, PictureSource* source,
+SequenceReport DensifySequence(const SparseModel& model, PictureSource* source,
                                const PartialDensificationOptions& options, int num_threads,
-                               const SequenceCallbacks& callbacks, const StereoRig& rig,
-                               const SequenceScope& scope) {
+                               const SequenceCallbacks& callbacks, const StereoRig& rig) {
+  return DensifyInScope(model, source, options, num_threads, callbacks, rig, {});
+}
+
+SequenceReport DensifyInScope(const SparseModel& given_model, PictureSource* source,
+                              const PartialDensificationOptions& options, int num_threads,
+                              const SequenceCallbacks& callbacks, const StereoRig& rig,
+                              const SequenceScope& scope) {
   PictureCache pictures(source);
   SequenceReport report;
   std::optional<SparseModel> with_points;

@@ -22,18 +22,8 @@ inline constexpr char kDensificationVersion[] = "9";
 // `source` and the callbacks throw, but for Error from ReadPicture and ReadSeaPoints. The same
 // clouds and rows, but for their seconds, for any num_threads, with or without `debug`. Memory does
 // not grow with the number of pictures but for some bytes a cell (packed_footprint.h).
-//
-// Where an earlier run left a surface, the pairs of the pictures that came in since are densified
-// alone, for what that surface lacks. Of a block, those that its pictures begin: blocks know
-// nothing of each other, and their clouds overlap by what pictures on both sides of a border show
-// (colmap_seapoint/merging). Both take the completion pass, which knows what is covered: see
-// CanBeDensifiedInParts().
 SequenceReport DensifySequence(const SparseModel& model, PictureSource* source,
                                const PartialDensificationOptions& options, int num_threads,
-                               const SequenceCallbacks& callbacks, const StereoRig& rig = {},
-                               const SequenceScope& scope = {});
-
-// Whether a cloud of these options can be added to, or made block by block.
-bool CanBeDensifiedInParts(const PartialDensificationOptions& options);
+                               const SequenceCallbacks& callbacks, const StereoRig& rig = {});
 
 }  // namespace colmap_seapoint

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "densify/overlap/earlier_surface.h"
 #include "densify/overlap/influence_mask.h"
 #include "densify/overlap/packed_footprint.h"
 #include "densify/partial_densification_options.h"

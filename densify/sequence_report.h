@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "densify/cloud/partial_cloud.h"
-#include "densify/overlap/earlier_surface.h"
 #include "densify/sequence/picture_source.h"
 
 namespace colmap_seapoint {
@@ -32,13 +31,6 @@ struct SequenceReport {
   std::vector<LeftOutPicture> left_out;  // pictures that could not be read
   int64_t num_points = 0;
   int64_t num_triangulated = 0;  // points made of matches, where the model has none that two see
-};
-
-// Which pictures of a model begin pairs: all of them, those that came in since an earlier run, or
-// those of a block. Any picture may complete a pair.
-struct SequenceScope {
-  EarlierSurface earlier;
-  int block = 1, num_blocks = 1;  // of the track, cut into parts of as many pictures
 };
 
 struct PairDebug;

@@ -19,9 +19,9 @@ struct AddedPictures {
 // `before` holds a model of ours, `folder` what COLMAP's mapper made of it (--input_path), with
 // more pictures. These are measured again (measure_again.h) together with those that see the same
 // points, and their poses and these points are adjusted; poses and lenses of `before` stay as they
-// are read. Of no use is a model that has lost one of the pictures of `before`, or lenses that it did
-// not have. Writes `folder`. Throws Error when a model cannot be read or written. The same model
-// for any number of threads.
+// are read. Of no use is a model that has lost one of the pictures of `before`, or lenses that it
+// did not have. Writes `folder`. Throws Error when a model cannot be read or written. The same
+// model for any number of threads.
 AddedPictures AdjustAddedPictures(const AdjustmentJob& job, const std::filesystem::path& before,
                                   const std::filesystem::path& folder);
 

@@ -129,6 +129,7 @@ void CloudMergerOptions::Bind(OptionTable* table) {
 }
 
 CommandResult RunCloudMerger(const CloudMergerOptions& options) {
+  CheckOutputPaths(options);
   const std::vector<fs::path> paths = PathsOf(options);
   const fs::path output = options.output_path;
   const std::string name = output.filename().string();

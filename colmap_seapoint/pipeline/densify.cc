@@ -29,6 +29,7 @@
 #include "colmap_seapoint/report/pairs_csv.h"
 #include "colmap_seapoint/workspace/earlier_outputs.h"
 #include "colmap_seapoint/workspace/output_paths.h"
+#include "densify/sequence_scope.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -173,8 +174,8 @@ SequenceReport Densify(const PartialDensifierOptions& options, const SparseModel
     callbacks.debug = [&](const PairDebug& pair) { figures.Write(pair); };
   }
   SequenceReport sequence =
-      DensifySequence(model, pictures, options.densification,
-                      EffectiveNumThreads(options.run.num_threads), callbacks, rig, scope);
+      DensifyInScope(model, pictures, options.densification,
+                     EffectiveNumThreads(options.run.num_threads), callbacks, rig, scope);
   if (progress) progress->Finish();
   if (sequence.num_triangulated > 0) {
     LogInfo("no point of the model is seen by two pictures: " +

@@ -11,6 +11,7 @@
 #include "colmap_seapoint/io/image/picture_masks.h"
 #include "colmap_seapoint/pipeline/densify.h"
 #include "densify/densify_sequence.h"
+#include "densify/sequence_scope.h"
 
 namespace colmap_seapoint {
 namespace {

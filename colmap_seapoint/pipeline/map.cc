@@ -81,10 +81,12 @@ Stage ModelStage(const MappingPlan& plan) {
   return {"model_to_continue", kMapperVersion, PlanText(plan), ""};
 }
 
-// Whether the cameras of all matched pictures are the model's.
-bool KnowsCameras(const fs::path& model_path, const std::vector<std::string>& pictures,
-                  const ColmapDatabase& database) {
+// Whether the cameras of all matched pictures are the model's, and at least half of the pictures
+// too: what a few pictures told of the lens is not to be held for many.
+bool CanTakeIn(const fs::path& model_path, const std::vector<std::string>& pictures,
+               const ColmapDatabase& database) {
   const SparseModel model = ReadSparseModel(model_path, ModelContent::kPosesAndPoints);
+  if (pictures.size() > 2 * model.images.size()) return false;
   const std::set<std::string> matched(pictures.begin(), pictures.end());
   for (const DatabaseImage& image : ReadImages(database)) {
     if (matched.count(image.name) > 0 && model.cameras.count(image.camera_id) == 0) return false;
@@ -104,7 +106,7 @@ std::optional<fs::path> ModelToContinue(const MappingPlan& plan, const ColmapDat
   if (!std::includes(lines.begin(), lines.end(), made_of->begin(), made_of->end())) {
     return std::nullopt;
   }
-  if (!KnowsCameras(models.front(), plan.job.pictures, database)) return std::nullopt;
+  if (!CanTakeIn(models.front(), plan.job.pictures, database)) return std::nullopt;
   return models.front();
 }
 

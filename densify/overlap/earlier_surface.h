@@ -16,6 +16,12 @@ struct EarlierSurface {
   std::vector<PackedFootprint> footprints;
 };
 
+// Which pictures of a model begin pairs. Any picture may complete a pair.
+struct SequenceScope {
+  EarlierSurface earlier;
+  int block = 1, num_blocks = 1;  // of the track, cut into parts of as many pictures
+};
+
 // Where the points of a pair lie, as the cells of its first picture: what TallyCells() knew when
 // they were made, near enough. `points`: world; `step`: SampleStep(). A cell counts when it holds
 // seven tenths of its samples: the rectified frame has some more, or fewer, than the picture.

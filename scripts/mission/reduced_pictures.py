@@ -4,6 +4,8 @@ import json
 import os
 import shutil
 
+from PIL import Image
+
 import dives
 
 LONGER_SIDE = 560  # pixels
@@ -18,25 +20,32 @@ def counts_in_pixels(project):
         return any(line.split("=")[0].strip().rpartition(".")[2] in IN_PIXELS for line in file)
 
 
-def reduce_one(source, target):
-    """A smaller copy in the same format, with the same EXIF: True. False: a link to what is small
-    already, or no picture that can be read here; the program says what it is."""
-    from PIL import Image, UnidentifiedImageError
-    os.makedirs(os.path.dirname(target), exist_ok=True)
+def read_reduced(source):
+    """The picture made smaller, and its format; None for what is small already, or no picture that can
+    be read here: the program says what it is."""
     try:
         with Image.open(source) as picture:
-            if max(picture.size) > LONGER_SIDE and picture.format in ("JPEG", "PNG", "TIFF"):
-                kept = {"exif": picture.info["exif"]} if "exif" in picture.info else {}
-                kind = picture.format
-                picture.draft(None, (LONGER_SIDE, LONGER_SIDE))
-                picture.thumbnail((LONGER_SIDE, LONGER_SIDE), Image.Resampling.BOX)
-                picture.save(target, kind, quality=92, **kept)
-                return True
-    except (OSError, ValueError, SyntaxError, UnidentifiedImageError, Image.DecompressionBombError):
-        if os.path.lexists(target):
-            os.remove(target)
-    os.symlink(os.path.abspath(source), target)
-    return False
+            kind = picture.format
+            if max(picture.size) <= LONGER_SIDE or kind not in ("JPEG", "PNG", "TIFF"):
+                return None
+            picture.draft(None, (LONGER_SIDE, LONGER_SIDE))
+            picture.thumbnail((LONGER_SIDE, LONGER_SIDE), Image.Resampling.BOX)
+            return picture.copy(), kind
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
+        return None
+
+
+def reduce_one(source, target):
+    """A smaller copy in the same format, with the same EXIF, and True; or a link, and False."""
+    os.makedirs(os.path.dirname(target), exist_ok=True)
+    reduced = read_reduced(source)
+    if reduced is None:
+        os.symlink(os.path.abspath(source), target)
+        return False
+    picture, kind = reduced
+    kept = {"exif": picture.info["exif"]} if "exif" in picture.info else {}
+    picture.save(target, kind, quality=92, **kept)
+    return True
 
 
 def folder_of(mission, dive, dive_digest):
@@ -59,7 +68,8 @@ def folder_of(mission, dive, dive_digest):
             path = os.path.join(root, name)
             jobs.append((path, os.path.join(target, os.path.relpath(path, source))))
     os.makedirs(target, exist_ok=True)
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        num_reduced = sum(pool.map(lambda job: reduce_one(*job), jobs))
+    # Not in threads: Pillow closes the file descriptors of TIFFs twice.
+    with concurrent.futures.ProcessPoolExecutor(os.cpu_count()) as pool:
+        num_reduced = sum(pool.map(reduce_one, *zip(*jobs), chunksize=8)) if jobs else 0
     dives.write_whole(record, json.dumps({"made_of": made_of, "num_reduced": num_reduced}))
     return target if num_reduced else source

@@ -90,8 +90,8 @@ def run_program(step, mission, dive, binary, quality, dive_digest, deadline):
         command = (coarse_command(mission, dive, binary, dive_digest) if step == "coarse"
                    else plan.command_of(mission, dive, binary, quality))
         exit_code = run_until(command, log_path, deadline, environment_of(step))
-    except OSError as error:
-        return 1, str(error)
+    except Exception as error:  # whatever it is: the other dives are to follow
+        return 1, f"{type(error).__name__}: {error}"
     if exit_code is None:
         return None, f"stopped at {deadlines.clock(deadline)}, goes on with the same command"
     if exit_code in (0, dives.INCOMPLETE):

@@ -105,6 +105,15 @@ TEST_F(Reconstruct, PicturesThatComeInAreAddedToTheModel) {
   EXPECT_EQ(ReadSparseModel(Root() / "sparse/0").images.size(), 6u);
 }
 
+TEST_F(Reconstruct, AFewPicturesAreNotWhatManyAreAddedTo) {
+  const FakeColmapMode continues("continues");
+  RunAutomaticReconstructor(ReconstructorOptions());
+  WritePictures(9);
+  const std::string log = LogOf([&] { RunAutomaticReconstructor(ReconstructorOptions()); });
+  EXPECT_EQ(log.find("pictures added to"), std::string::npos) << log;
+  EXPECT_EQ(ReadSparseModel(Root() / "sparse/0").images.size(), 9u);
+}
+
 TEST_F(Reconstruct, TheMatcherIsChosenByTheNumberOfPicturesOrTheUser) {
   AutomaticReconstructorOptions options = ReconstructorOptions();
   options.matcher = "sequential";
