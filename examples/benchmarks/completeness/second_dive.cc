@@ -10,6 +10,7 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/cloud/ply.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "densify/completeness/completeness_options.h"
 #include "densify/completeness/surface/asked_area.h"
 #include "examples/benchmarks/completeness/gap_truth.h"
 #include "examples/subcommands.h"
@@ -86,7 +87,9 @@ std::vector<AskedArea> ReadGaps(const SurveyTruth& truth, const fs::path& folder
 GapTruth TruthOf(const SurveyTruth& truth, const PlantedGaps& planted,
                  const std::string& cloud_path) {
   std::vector<Eigen::Vector3f> points;
-  for (const CloudPoint& point : ReadCloud(cloud_path)) points.push_back(point.xyz);
+  for (const CloudPoint& point : ReadCloud(cloud_path)) {
+    if (point.confidence >= CompletenessOptions{}.min_confidence) points.push_back(point.xyz);
+  }
   return MeasureGapTruth(truth, planted, points, -1);
 }
 
