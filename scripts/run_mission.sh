@@ -94,6 +94,7 @@ stop() {
   exit 130
 }
 trap stop INT TERM HUP
+trap '[ -z "$follower" ] || kill "$follower" 2>/dev/null || true' EXIT
 
 run_engine() {  # STEP
   set -m
@@ -117,12 +118,12 @@ run_engine() {  # STEP
 }
 
 py dives forget_failed "$mission"
-/usr/bin/python3 "$scripts/dives.py" follow "$mission" 9>&- &
-follower=$!
 before=
 dives=$(py dives list "$mission")
 [ -n "$dives" ] ||
   { echo "$mission: holds no dive; put each dive's pictures into a folder of its own" >&2; exit 1; }
+/usr/bin/python3 "$scripts/dives.py" follow "$mission" 9>&- &
+follower=$!
 py plan tell "$mission" "$binary" "$quality" "$deadline"
 # Once more where something came in meanwhile.
 while [ "$before" != "$dives" ]; do

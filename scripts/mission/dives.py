@@ -181,7 +181,8 @@ def follow(mission):
         sys.exit(0)
 
     signal.signal(signal.SIGTERM, tell_the_rest)
-    while True:
+    parent = os.getppid()
+    while os.getppid() == parent:  # a signal may come before it is heard
         time.sleep(5)
         sys.stderr.write(own.read())
         try:
