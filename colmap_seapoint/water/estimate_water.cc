@@ -107,28 +107,19 @@ WaterState FitWater(const std::vector<WaterSample>& samples, WaterModel* water,
   return WaterState::kDetermined;
 }
 
-// What is bright is nearly white, what is dark or coloured says little: the mean of the sixth
-// powers is grey ("shades of grey", Finlayson and Trezzi 2004), the median middling bright. A plain
-// mean turns brown ground blue.
+// Grey is what the median of all samples is, restored.
 Eigen::Array3d WhiteBalance(const std::vector<WaterSample>& samples, WaterModel water) {
-  constexpr double kPower = 6;
+  std::vector<double> channel(samples.size());
   water.max_gain.setConstant(std::numeric_limits<double>::infinity());
-  std::vector<Eigen::Array3d> colors;
-  Eigen::Array3d powers = Eigen::Array3d::Zero();
-  for (const WaterSample& sample : samples) {
-    colors.push_back(Restore(water, ColorOf(sample).cast<float>(), sample.range, sample.axis_cosine)
-                         .cast<double>());
-    powers += colors.back().pow(kPower);
+  Eigen::Array3d white;
+  for (int c = 0; c < 3; ++c) {
+    for (size_t i = 0; i < samples.size(); ++i) {
+      channel[i] = static_cast<double>(Restore(water, ColorOf(samples[i]).cast<float>(),
+                                               samples[i].range, samples[i].axis_cosine)[c]);
+    }
+    white[c] = std::clamp(kGrey / std::max(UpperMedian(channel), 1e-9), 1 / kMaxWhite, kMaxWhite);
   }
-  const Eigen::Array3d bright =
-      (powers / static_cast<double>(samples.size())).pow(1 / kPower).max(1e-9);
-  std::vector<double> luminances;
-  for (const Eigen::Array3d& color : colors) {
-    luminances.push_back((kLuminance * color / bright).sum());
-  }
-  return (kGrey / std::max(UpperMedian(std::move(luminances)), 1e-9) / bright)
-      .max(1 / kMaxWhite)
-      .min(kMaxWhite);
+  return white;
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ struct WaterModel {
   Eigen::Array3d veil = Eigen::Array3d::Zero();         // B, linear light
   Eigen::Array3d veil_rate = Eigen::Array3d::Zero();    // b, 1/unit
   double falloff = 0;                                   // v
-  Eigen::Array3d white = Eigen::Array3d::Ones();        // factors on J: what is bright is white
+  Eigen::Array3d white = Eigen::Array3d::Ones();        // factors on J: the survey's mean is grey
   // Factors of exp(a z) beyond these would show noise: what lies farther stays as weak as it is.
   Eigen::Array3d max_gain = Eigen::Array3d::Ones();
 
