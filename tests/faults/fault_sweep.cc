@@ -129,7 +129,7 @@ bool IsSameEachTime(const fs::path& path) {
   const bool is_report = name.size() >= sizeof(kReport) - 1 &&
                          name.compare(name.size() - (sizeof(kReport) - 1), name.npos, kReport) == 0;
   return !is_report && !IsNameList(path) && name != "pairs.csv" && name != "summary.txt" &&
-         !IsLog(path) && path.parent_path().filename() != "state";
+         name != "index.html" && !IsLog(path) && path.parent_path().filename() != "state";
 }
 
 // What lies there while a run is at work only.
