@@ -22,6 +22,8 @@ else
   files=("$@")
 fi
 mkdir -p $passed
+# Without the precompiled headers, which are another compiler's.
+sed 's/-Winvalid-pch -include [^ ]*//' $build/compile_commands.json >$passed/compile_commands.json
 version=$("$tidy" --version | cat - .clang-tidy | sha256sum)
 # Headers of ours by source, as the compiler found them: "source<TAB>header" a line.
 includes=$passed/includes.tsv
@@ -78,13 +80,13 @@ key_of() {  # FILE...
     headers=$(awk -F '\t' -v file="$file" '$1 == file { print $2 }' $includes | LC_ALL=C sort -u)
     [ -n "$headers" ] || return 0
     # shellcheck disable=SC2086  # names of ours hold no blank
-    { echo "$version"; grep -F -- "-c $PWD/$file\"" $build/compile_commands.json; cat "$file" $headers; } |
+    { echo "$version"; grep -F -- "-c $PWD/$file\"" $passed/compile_commands.json; cat "$file" $headers; } |
       sha256sum
   done | sha256sum | cut -d ' ' -f 1
 }
 
 tidy_one() {  # FILE
-  "$tidy" -p $build --quiet "$1" 2> >(grep -v ' warnings\? generated\.$' >&2)
+  "$tidy" -p $passed --quiet "$1" 2> >(grep -v ' warnings\? generated\.$' >&2)
 }
 
 # All files of a pack as one, with what any of them is compiled with.
@@ -93,8 +95,8 @@ tidy_as_one() {  # FILE...
   pack=$(mktemp -d "$PWD/$passed/pack_XXXXXX")
   printf "#include \"$PWD/%s\"\n" "$@" >"$pack/all.cc"
   local flags
-  flags=$(for file in "$@"; do grep -F -- "-c $PWD/$file\"" $build/compile_commands.json; done |
-    sed 's/^ *"command": "[^ ]*c++ //; s/ -o .*//; s/-isystem /-isystem/g; s/ -Wshadow//; s/-Winvalid-pch -include [^ ]*//' |
+  flags=$(for file in "$@"; do grep -F -- "-c $PWD/$file\"" $passed/compile_commands.json; done |
+    sed 's/^ *"command": "[^ ]*c++ //; s/ -o .*//; s/-isystem /-isystem/g; s/ -Wshadow//' |
     tr ' ' '\n' | awk '!seen[$0]++' | tr '\n' ' ')
   printf '[{"directory": "%s", "file": "%s", "command": "c++ %s -c %s"}]\n' \
     "$PWD/$build" "$pack/all.cc" "$flags" "$pack/all.cc" >"$pack/compile_commands.json"

@@ -89,6 +89,34 @@ void WriteBlockIndex(const std::vector<std::filesystem::path>& blocks,
   index.Commit();
 }
 
+// Each one's place and length, in the file's table of them.
+bool HasAllBlocksOf(GDALRasterBandH band) {
+  int side_x = 0, side_y = 0;
+  GDALGetBlockSize(band, &side_x, &side_y);
+  const int num_x = (GDALGetRasterBandXSize(band) - 1) / side_x + 1;
+  const int num_y = (GDALGetRasterBandYSize(band) - 1) / side_y + 1;
+  for (int i = 0; i < num_x * num_y; ++i) {
+    const std::string block = std::to_string(i % num_x) + "_" + std::to_string(i / num_x);
+    for (const char* what : {"BLOCK_OFFSET_", "BLOCK_SIZE_"}) {
+      if (GDALGetMetadataItem(band, (what + block).c_str(), "TIFF") == nullptr) return false;
+    }
+  }
+  return true;
+}
+
+// GDAL says nothing when the last that it writes of a file, the table of its blocks, fails.
+bool IsWhole(const std::filesystem::path& cog) {
+  const GdalDataset dataset(
+      GDALOpenEx(cog.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
+  if (dataset == nullptr) return false;
+  GDALRasterBandH band = GDALGetRasterBand(dataset.get(), 1);
+  bool is_whole = HasAllBlocksOf(band);
+  for (int i = 0; i < GDALGetOverviewCount(band); ++i) {
+    is_whole = is_whole && HasAllBlocksOf(GDALGetOverview(band, i));
+  }
+  return is_whole;
+}
+
 std::filesystem::path BlockFolder(const std::filesystem::path& path) {
   return path.parent_path() / (path.stem().string() + "_blocks");
 }
@@ -129,6 +157,10 @@ void WriteCog(GDALDatasetH scratch, const AtomicPath& scratch_file,
     session.Check(copy != nullptr, &file);
     copy.reset();
     session.Check(true, &file);
+    if (!IsWhole(file.Temporary())) {
+      throw Error(path.string(), "was not written as a whole",
+                  "check the disk's space and health, then run it again");
+    }
   }
   file.Commit();
 }
