@@ -36,14 +36,14 @@ void PatchProjection::PixelsOfRow(double column, double row, const float* height
   const auto reach = static_cast<float>(reach_);
   const auto ray_x = static_cast<float>(ray_.x()), ray_y = static_cast<float>(ray_.y());
   const auto pixel_x = static_cast<float>(pixel_.x()), pixel_y = static_cast<float>(pixel_.y());
-  bool is_linear = true;
+  int num_linear = 0;
   for (int i = 0; i < count; ++i) {
     const auto steps = static_cast<float>(i);
     const float height = heights[i] - middle_height;
     const float z = first.z() + steps * step.z() + height * up.z();
     const float u = (first.x() + steps * step.x() + height * up.x()) / z - ray_x;
     const float v = (first.y() + steps * step.y() + height * up.y()) / z - ray_y;
-    is_linear &= (z > 0) & (std::abs(u) <= reach) & (std::abs(v) <= reach);
+    num_linear += z > 0 && std::abs(u) <= reach && std::abs(v) <= reach;
     x[i] = pixel_x + lens(0, 0) * u + lens(0, 1) * v;
     y[i] = pixel_y + lens(1, 0) * u + lens(1, 1) * v;
   }
@@ -51,7 +51,7 @@ void PatchProjection::PixelsOfRow(double column, double row, const float* height
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   for (int i = 0; i < count; ++i) {
     std::optional<Eigen::Vector2d> pixel = Eigen::Vector2d(double{x[i]}, double{y[i]});
-    if (!is_linear) pixel = PixelOf({column + i, row, double{heights[i]}});
+    if (num_linear < count) pixel = PixelOf({column + i, row, double{heights[i]}});
     const bool is_shown = pixel && camera.InImage(*pixel);
     x[i] = is_shown ? static_cast<float>(pixel->x()) : kNone;
     y[i] = is_shown ? static_cast<float>(pixel->y()) : kNone;

@@ -53,8 +53,9 @@ class SourceViewer {
     const PatchProjection projection(view_, relief_.Grid(), middle);
     for (int i = 0; i < kSamples * kSamples; ++i) {
       constexpr double kStep = static_cast<double>(kBlockSize) / kSamples;
-      const double dx = (i % kSamples + 0.5) * kStep - 0.5 * kBlockSize;
-      const double dy = (i / kSamples + 0.5) * kStep - 0.5 * kBlockSize;
+      const int column = i % kSamples, row = i / kSamples;
+      const double dx = (column + 0.5) * kStep - 0.5 * kBlockSize;
+      const double dy = (row + 0.5) * kStep - 0.5 * kBlockSize;
       const auto pixel = projection.PixelOf(middle + Eigen::Vector3d(dx, dy, 0));
       if (!pixel) continue;
       const auto px = static_cast<float>(scale_x_ * pixel->x());
