@@ -11,6 +11,7 @@
 #include "colmap_seapoint/base/median.h"
 #include "colmap_seapoint/gaps/gap_colors.h"
 #include "colmap_seapoint/report/format_text.h"
+#include "densify/completeness/judge_ground.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -156,10 +157,9 @@ GroundMap DrawCoverage(const GroundLayer& layer, const Extent& extent) {
   return map;
 }
 
-// What only every fourth covered cell both ways knows (judge_ground.h) is shown by its block.
+// What only a sample of the covered cells knows is shown by its block.
 const GroundCell* SampleOf(const GroundLayer& layer, int x, int y) {
-  const auto down = [](int v) { return v >= 0 ? v / 4 * 4 : -((-v + 3) / 4) * 4; };
-  const GroundCell* cell = layer.cells.Find(down(x), down(y));
+  const GroundCell* cell = layer.cells.Find(SampledCellOf(x), SampledCellOf(y));
   return cell != nullptr && cell->is_covered && cell->num_views > 0 ? cell : nullptr;
 }
 
