@@ -8,12 +8,14 @@ namespace colmap_seapoint {
 namespace {
 
 struct Areas {
-  double lost = 0;       // covered before, and no longer
-  double found = 0;      // of it: said to be missing
-  double said = 0;       // said to be missing, and was not before
-  double not_lost = 0;   // of it: no part of the survey, as all pictures together tell
+  double beyond = 0;    // covered before, and now beyond the outline of what is left
+  double lost = 0;      // of the rest: covered before, and no longer
+  double found = 0;     // of it: said to be missing
+  double said = 0;      // said to be missing, and was not before
+  double not_lost = 0;  // of it: no part of the survey, as all pictures together tell
 
   void Add(const Areas& other) {
+    beyond += other.beyond;
     lost += other.lost;
     found += other.found;
     said += other.said;
@@ -29,7 +31,10 @@ Areas CompareLayer(const GroundLayer& all, const GroundLayer* rest) {
     if (!cell.is_expected || !cell.is_covered) return;
     const GroundCell* left = rest == nullptr ? nullptr : rest->cells.Find(x, y);
     if (left != nullptr && left->is_covered) return;
-    areas.lost += cell.area;
+    // No picture that is left shows it, nor is it among those that do.
+    const bool is_beyond =
+        left == nullptr || (!left->is_expected && left->cause == GapCause::kNone);
+    (is_beyond ? areas.beyond : areas.lost) += cell.area;
     if (left != nullptr && IsMissing(*left)) areas.found += cell.area;
   });
   if (rest == nullptr) return areas;
@@ -56,9 +61,8 @@ Areas CheckFold(const CompletenessInput& input, const CompletenessOptions& optio
                 const SurveySetting& setting, const Ground& ground, int fold, int num_threads) {
   const std::vector<bool> is_hidden = HiddenInFold(*input.model, fold);
   const SparseModel rest = WithoutHidden(*input.model, is_hidden);
-  const JudgedSurvey judged =
-      JudgeSurvey(InputWithoutHidden(input, rest, is_hidden), options, setting,
-                  MakeViews(rest, setting.max_range), num_threads);
+  const JudgedSurvey judged = JudgeSurvey(InputWithoutHidden(input, rest, is_hidden), options,
+                                          setting, MakeViews(rest, setting.max_range), num_threads);
   return CompareGrounds(ground, judged.ground);
 }
 
@@ -79,7 +83,8 @@ SelfCheck CheckByHiding(const CompletenessInput& input, const CompletenessOption
     ++check.num_folds;
   }
   if (check.num_folds == 0) return check;
-  check.hidden_area = sum.lost;
+  check.hidden_area = sum.lost + sum.beyond;
+  check.beyond_share = sum.beyond / check.hidden_area;
   check.found_share = sum.found / sum.lost;
   check.false_share = sum.said > 0 ? sum.not_lost / sum.said : 0;
   check.area_error = std::sqrt(squares / check.num_folds);

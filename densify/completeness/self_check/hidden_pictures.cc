@@ -16,7 +16,7 @@ std::vector<bool> HiddenInFold(const SparseModel& model, int fold) {
   });
   std::vector<bool> is_hidden(order.size());
   for (size_t i = 0; i < order.size(); ++i) {
-    is_hidden[order[i]] = static_cast<int>(i / kHiddenRun) % kNumFolds == fold;
+    is_hidden[order[i]] = static_cast<int>(i % kNumFolds) == fold;
   }
   return is_hidden;
 }

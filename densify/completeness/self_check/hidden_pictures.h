@@ -7,9 +7,9 @@
 
 namespace colmap_seapoint {
 
-// Which pictures (image_idx) are hidden the `fold`-th time of kNumFolds: every fourth run of three
-// in the order of their names. Over all folds each picture is hidden once.
-inline constexpr int kNumFolds = 4, kHiddenRun = 3;
+// Which pictures (image_idx) are hidden the `fold`-th time of kNumFolds: every fourth in the order
+// of their names, so that the survey's outline stays. Over all folds each picture is hidden once.
+inline constexpr int kNumFolds = 4;
 std::vector<bool> HiddenInFold(const SparseModel& model, int fold);
 
 // What is left of the model: pictures that are not hidden, and points that two of them still hold.
