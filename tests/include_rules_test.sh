@@ -37,6 +37,7 @@ densify/completeness/surface    colmap_seapoint/base
 densify/completeness/sight      colmap_seapoint/base densify/completeness/surface
 densify/completeness/gaps       colmap_seapoint/base densify/completeness/surface
 densify/completeness            colmap_seapoint/base densify/match densify/completeness/*
+densify/self_check              colmap_seapoint/base densify/completeness densify/completeness/*
 densify                         colmap_seapoint/base densify/*
 colmap_seapoint/estimate        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files
 colmap_seapoint/markers         colmap_seapoint/base

@@ -31,6 +31,8 @@
 #include "colmap_seapoint/pipeline/page/completeness_page.h"
 #include "colmap_seapoint/workspace/output_paths.h"
 #include "densify/completeness/assess_completeness.h"
+#include "densify/self_check/check_by_hiding.h"
+#include "densify/self_check/hidden_pictures.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -42,6 +44,10 @@ void Validate(const CompletenessReporterOptions& options) {
   if (!options.image_path.empty() && !fs::is_directory(options.image_path)) {
     throw Error(options.image_path, "there is no such folder", "check --image_path");
   }
+  if (options.self_check && !fs::exists(options.cloud_path + ".vis")) {
+    throw Error(options.cloud_path + ".vis", "is not there, so that no picture can be hidden",
+                "give a cloud of partial_densifier, or leave --self_check");
+  }
 }
 
 SparseModel ReadModel(const CompletenessReporterOptions& options) {
@@ -49,6 +55,10 @@ SparseModel ReadModel(const CompletenessReporterOptions& options) {
   if (model.images.empty()) {
     throw Error(options.input_path, "the model holds no pictures",
                 "give a model of COLMAP's mapper");
+  }
+  if (options.self_check && model.images.size() < kMinPicturesToHide) {
+    throw Error(options.input_path, "holds too few pictures to hide some of them",
+                "leave --self_check");
   }
   if (!options.image_path.empty()) {
     ScaleCamerasToPictures(options.image_path, options.run.num_threads, &model);
@@ -115,6 +125,8 @@ PictureFacts ReadFacts(const CompletenessReporterOptions& options, const Picture
   *brightness = static_cast<double>(sum) / static_cast<double>(luma.data.size());
   return MeasurePicture(luma, masks.Decode(name, masks.Open(name), luma.width, luma.height));
 }
+
+constexpr int kNumReadings = 2;  // of the cloud (CompletenessInput)
 
 // A step a picture that is looked at, and as many each time that the cloud is read.
 class AssessmentProgress {
@@ -199,12 +211,18 @@ class PointReading {
   uint64_t num_read_ = 0;
 };
 
-void ReadPoints(const CompletenessReporterOptions& options, AssessmentProgress* progress,
+// With the pictures that each point is from, which only a self check asks for.
+void ReadPoints(const CompletenessReporterOptions& options, size_t num_pictures,
+                AssessmentProgress* progress,
                 const std::function<void(const ConfidentPoint&)>& take, Seen* seen) {
   CloudReader reader(options.cloud_path);
   PointReading reading(reader.NumPoints(), progress, seen);
-  if (options.completeness.self_check) {
+  if (options.self_check) {
     ReadSeenCloud(options.cloud_path, [&](const CloudPoint& p, uint32_t first, uint32_t second) {
+      if (std::max(first, second) >= num_pictures) {
+        throw Error(options.cloud_path + ".vis", "names pictures that the model does not hold",
+                    "give the model that the cloud was made from, or leave --self_check");
+      }
       const Eigen::Vector3d xyz = p.xyz.cast<double>();
       take({{xyz, p.normal.cast<double>()}, p.confidence, {first, second}});
       reading.Read(xyz, p.rgb);
@@ -249,8 +267,10 @@ CompletenessResult Assess(const CompletenessReporterOptions& options, const Spar
   }
   report->points = static_cast<int64_t>(input.num_points);
   AssessmentProgress progress(model.images.size(), input.num_points,
-                              NumReadings(options.completeness));
-  input.for_each_point = [&](const auto& take) { ReadPoints(options, &progress, take, seen); };
+                              kNumReadings + (options.self_check ? kNumFolds : 0));
+  input.for_each_point = [&](const auto& take) {
+    ReadPoints(options, model.images.size(), &progress, take, seen);
+  };
   input.asked = ReadArea(options, units.value_or(ModelUnits()));
   input.frame_of = [&](const auto& sample) { return FindPlan(options, model, units, sample); };
   input.lost = LostPictures(options, model);
@@ -261,8 +281,11 @@ CompletenessResult Assess(const CompletenessReporterOptions& options, const Spar
   input.facts = MeasurePictures(options, model, &progress, seen, report);
   CompletenessResult result =
       AssessCompleteness(input, options.completeness, options.run.num_threads);
-  progress.Finish();
   CheckResult(options, result);
+  if (options.self_check) {
+    CheckByHiding(input, options.completeness, options.run.num_threads, &result);
+  }
+  progress.Finish();
   return result;
 }
 
@@ -340,7 +363,7 @@ void CompletenessReporterOptions::Bind(OptionTable* table) {
       "folder that orthomosaic wrote, for the page's map; empty = the page has none under it",
       "ours");
   completeness.Bind(table);
-  table->Add("self_check", &completeness.self_check,
+  table->Add("self_check", &self_check,
              "hide a quarter of the pictures four times, and measure on what they showed how wrong "
              "the missing area is said; asks for <cloud_path>.vis",
              "ours");

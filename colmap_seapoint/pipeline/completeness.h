@@ -24,6 +24,7 @@ struct CompletenessReporterOptions {
   // placed here either. Set by the chain.
   std::vector<std::string> posed_elsewhere;
   CompletenessOptions completeness;
+  bool self_check = false;  // measures the tolerance (densify/self_check)
   RunOptions run;
 
   void Bind(OptionTable* table);

@@ -6,8 +6,6 @@
 #include "densify/completeness/gaps/merge_gaps.h"
 #include "densify/completeness/judge_ground.h"
 #include "densify/completeness/judge_survey.h"
-#include "densify/completeness/self_check/check_by_hiding.h"
-#include "densify/completeness/self_check/hidden_pictures.h"
 #include "densify/completeness/survey_scale.h"
 #include "densify/match/cell_grid.h"
 
@@ -190,10 +188,6 @@ void JoinPasses(CompletenessResult* result) {
 
 }  // namespace
 
-int NumReadings(const CompletenessOptions& options) {
-  return 2 + (options.self_check ? kNumFolds : 0);
-}
-
 CompletenessResult AssessCompleteness(const CompletenessInput& input,
                                       const CompletenessOptions& options, int num_threads) {
   CompletenessResult result;
@@ -219,12 +213,6 @@ CompletenessResult AssessCompleteness(const CompletenessInput& input,
   result.lost_runs = std::move(judged.lost_runs);
 
   Measure(&result);
-  if (options.self_check) {
-    result.self_check = CheckByHiding(input, options, setting, result.ground, num_threads);
-    const double missing_share = 1 - result.coverage[0].share;
-    result.share_tolerance =
-        std::hypot(result.share_tolerance, result.self_check.area_error * missing_share);
-  }
   FindGaps(input, views, judged.plan, &result);
   JoinPasses(&result);
   return result;

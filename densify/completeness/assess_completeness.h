@@ -24,7 +24,6 @@
 #include "densify/completeness/gaps/closing_pass.h"
 #include "densify/completeness/gaps/gap_ids.h"
 #include "densify/completeness/picture_records.h"
-#include "densify/completeness/self_check/self_check.h"
 
 namespace colmap_seapoint {
 
@@ -34,7 +33,7 @@ inline constexpr char kCompletenessVersion[] = "2";
 struct ConfidentPoint {
   SurfacePoint place;
   float confidence = 1;
-  std::array<uint32_t, 2> pictures = {};  // image_idx of those it is from; for self_check alone
+  std::array<uint32_t, 2> pictures = {};  // image_idx of those it is from; for the self check alone
 };
 
 // A gap of an earlier report on the same frame.
@@ -46,7 +45,7 @@ struct FormerOutline {
 
 struct CompletenessInput {
   const SparseModel* model = nullptr;  // with points and their ids by image (ModelContent)
-  // Calls its argument for every point of the cloud, in order. Called NumReadings() times.
+  // Calls its argument for every point of the cloud, in order. Called twice.
   std::function<void(const std::function<void(const ConfidentPoint&)>&)> for_each_point;
   uint64_t num_points = 0;
   // The plan for a sample of the cloud; empty: the world's own.
@@ -76,6 +75,17 @@ struct CoverageAt {
   double share = 0;    // of the expected area
 };
 
+// What came of hiding pictures from the report (densify/self_check).
+struct SelfCheck {
+  int num_folds = 0;       // 0: nothing was checked
+  double hidden_area = 0;  // units^2 of covered surface that went with the pictures, over all folds
+  double beyond_share = 0;  // of it: beyond the outline of what was left, which nobody can miss
+  double found_share = 0;   // of the rest: said to be missing
+  double false_share = 0;   // of what was said to be missing in addition: no part of the survey
+  // Said over true area that is missing, less 1: root of the mean square over the folds.
+  double area_error = 0;
+};
+
 struct CompletenessResult {
   // Of the sample of the cloud that is in a picture: small when cloud and model do not belong
   // together. Below kMinBelonging nothing else is filled.
@@ -87,8 +97,8 @@ struct CompletenessResult {
   double expected_area = 0;            // units^2, along the surface
   std::array<CoverageAt, 3> coverage;  // at the spacing, at 2 and at 4 times it
   // Of the share at the wanted spacing, +-: what is thin (ground.h), which another threshold would
-  // have judged otherwise; and with self_check how wrong the area of what is missing was where the
-  // survey itself could tell. What is wrong with the cloud is not in it.
+  // have judged otherwise; and with a self check how wrong the area of what is missing was where
+  // the survey itself could tell. What is wrong with the cloud is not in it.
   double share_tolerance = 0;
   SelfCheck self_check;  // num_folds 0: not asked for, or too few pictures
   std::array<double, kNumGapCauses> missing_area = {};  // by cause; all cells, also of small gaps
@@ -104,9 +114,6 @@ struct CompletenessResult {
   double route_length = 0;       // passes and ways between, units
 };
 inline constexpr double kMinBelonging = 0.5;
-
-// How often the cloud is read.
-int NumReadings(const CompletenessOptions& options);
 
 // The same for any number of threads. Memory: 24 bytes a cell of the ground, 2 a depth cell of
 // every picture; the cloud is streamed.

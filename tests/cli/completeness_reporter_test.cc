@@ -198,6 +198,36 @@ TEST_F(CompletenessReporter, UnreadablePictureIsNamed) {
   EXPECT_NE(result.err.find("dive_2.png"), std::string::npos);
 }
 
+TEST_F(CompletenessReporter, ChecksItselfByHiddenPictures) {
+  ASSERT_EQ(Report().exit_code, 0);
+  const double tolerance = Answer().at("covered_share_tolerance");
+  EXPECT_TRUE(Answer().at("self_check").is_null());
+  const CliResult run = Report({"--self_check", "1"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  // All points are from pictures 0 and 1: twice nothing was lost.
+  EXPECT_EQ(Answer().at("self_check").at("folds"), 2);
+  EXPECT_GT(Answer().at("self_check").at("hidden_area"), 1);
+  EXPECT_GE(Answer().at("covered_share_tolerance"), tolerance);
+}
+
+TEST_F(CompletenessReporter, WithoutWhatTellsThePicturesNothingIsHidden) {
+  const fs::path vis = folder_ / "fused.ply.vis";
+  std::fstream file(vis, std::ios::binary | std::ios::in | std::ios::out);
+  file.seekp(12);  // the first point's first picture
+  const uint32_t other = 6;
+  file.write(reinterpret_cast<const char*>(&other), sizeof(other));
+  file.close();
+  CliResult run = Report({"--self_check", "1"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_NE(run.err.find("names pictures that the model does not hold"), std::string::npos)
+      << run.err;
+  fs::remove(vis);
+  run = Report({"--self_check", "1"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_NE(run.err.find("no picture can be hidden"), std::string::npos) << run.err;
+  EXPECT_EQ(Report().exit_code, 0);
+}
+
 TEST_F(CompletenessReporter, FaultsSayWhatToDo) {
   const auto last_line_of = [&](const CliResult& result) {
     EXPECT_EQ(result.exit_code, 1);

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "densify/completeness/self_check/check_by_hiding.h"
-#include "densify/completeness/self_check/hidden_pictures.h"
+#include "densify/self_check/check_by_hiding.h"
+#include "densify/self_check/hidden_pictures.h"
 #include "tests/densify/completeness/flat_survey.h"
 
 namespace colmap_seapoint {
@@ -11,10 +11,10 @@ namespace {
 
 bool Everywhere(const Eigen::Vector2d&) { return true; }
 
-CompletenessOptions Checked() {
-  CompletenessOptions options;
-  options.self_check = true;
-  return options;
+CompletenessResult Assess(const CompletenessInput& input, bool is_checked) {
+  CompletenessResult result = AssessCompleteness(input, {}, 2);
+  if (is_checked) CheckByHiding(input, {}, 2, &result);
+  return result;
 }
 
 TEST(HiddenPictures, EveryPictureIsHiddenOnce) {
@@ -58,7 +58,7 @@ constexpr FlatSurveyOptions kSurvey = {2, 8, 1.6, 3.2};
 
 TEST(CheckByHiding, OnALevelSeabedTheMissingAreaIsToldRight) {
   const SparseModel model = MakeFlatSurvey(kSurvey);
-  const CompletenessResult result = AssessCompleteness(FlatInput(model, Everywhere), Checked(), 2);
+  const CompletenessResult result = Assess(FlatInput(model, Everywhere), true);
   EXPECT_EQ(result.self_check.num_folds, kNumFolds);
   EXPECT_GT(result.self_check.hidden_area, 0.5 * result.coverage[0].area);
   EXPECT_GT(result.self_check.found_share, 0.99);
@@ -78,8 +78,8 @@ TEST(CheckByHiding, WhatCannotBeForetoldWidensTheTolerance) {
       take(point);
     });
   };
-  const CompletenessResult checked = AssessCompleteness(input, Checked(), 2);
-  const CompletenessResult unchecked = AssessCompleteness(input, {}, 2);
+  const CompletenessResult checked = Assess(input, true);
+  const CompletenessResult unchecked = Assess(input, false);
   EXPECT_GT(checked.self_check.area_error, 0.02);
   EXPECT_GT(checked.share_tolerance, 1.5 * unchecked.share_tolerance);
   EXPECT_EQ(checked.coverage[0].share, unchecked.coverage[0].share);
@@ -87,8 +87,8 @@ TEST(CheckByHiding, WhatCannotBeForetoldWidensTheTolerance) {
 }
 
 TEST(CheckByHiding, AFewPicturesAreNotHidden) {
-  const SparseModel model = MakeFlatSurvey({1, 7, 1.6, 3.2});
-  const CompletenessResult result = AssessCompleteness(FlatInput(model, Everywhere), Checked(), 1);
+  const SparseModel model = MakeFlatSurvey({1, 3, 1.6, 3.2});
+  const CompletenessResult result = Assess(FlatInput(model, Everywhere), true);
   EXPECT_EQ(result.self_check.num_folds, 0);
 }
 

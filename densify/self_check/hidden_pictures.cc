@@ -1,4 +1,4 @@
-#include "densify/completeness/self_check/hidden_pictures.h"
+#include "densify/self_check/hidden_pictures.h"
 
 #include <algorithm>
 #include <numeric>

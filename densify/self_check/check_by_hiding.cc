@@ -1,8 +1,9 @@
-#include "densify/completeness/self_check/check_by_hiding.h"
+#include "densify/self_check/check_by_hiding.h"
 
 #include <cmath>
 
-#include "densify/completeness/self_check/hidden_pictures.h"
+#include "densify/completeness/judge_survey.h"
+#include "densify/self_check/hidden_pictures.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -66,16 +67,21 @@ Areas CheckFold(const CompletenessInput& input, const CompletenessOptions& optio
   return CompareGrounds(ground, judged.ground);
 }
 
-}  // namespace
+// What the whole survey was measured by.
+SurveySetting SettingOf(const CompletenessInput& input, const CompletenessOptions& options,
+                        const CompletenessResult& result) {
+  return {result.gsd, result.spacing, options.spacing > 0 ? 0 : result.spacing / result.gsd,
+          VisualRange(*input.model), result.ground.frame};
+}
 
-SelfCheck CheckByHiding(const CompletenessInput& input, const CompletenessOptions& options,
-                        const SurveySetting& setting, const Ground& ground, int num_threads) {
+SelfCheck HideAll(const CompletenessInput& input, const CompletenessOptions& options,
+                  int num_threads, const CompletenessResult& result) {
+  const SurveySetting setting = SettingOf(input, options, result);
   SelfCheck check;
-  if (input.model->images.size() < kMinPicturesToHide) return check;
   Areas sum;
   double squares = 0;
   for (int fold = 0; fold < kNumFolds; ++fold) {
-    const Areas areas = CheckFold(input, options, setting, ground, fold, num_threads);
+    const Areas areas = CheckFold(input, options, setting, result.ground, fold, num_threads);
     if (!(areas.lost > 0)) continue;
     const double error = areas.said / areas.lost - 1;
     squares += error * error;
@@ -89,6 +95,17 @@ SelfCheck CheckByHiding(const CompletenessInput& input, const CompletenessOption
   check.false_share = sum.said > 0 ? sum.not_lost / sum.said : 0;
   check.area_error = std::sqrt(squares / check.num_folds);
   return check;
+}
+
+}  // namespace
+
+void CheckByHiding(const CompletenessInput& input, const CompletenessOptions& options,
+                   int num_threads, CompletenessResult* result) {
+  if (input.model->images.size() < kMinPicturesToHide) return;
+  result->self_check = HideAll(input, options, num_threads, *result);
+  const double missing_share = 1 - result->coverage[0].share;
+  result->share_tolerance =
+      std::hypot(result->share_tolerance, result->self_check.area_error * missing_share);
 }
 
 }  // namespace colmap_seapoint
