@@ -27,6 +27,7 @@ JudgedSurvey JudgeSurvey(const CompletenessInput& input, const CompletenessOptio
   Ground& ground = judged.ground;
   ground.frame = setting.frame;
   ground.cell_side = kCellSpacings * setting.spacing;
+  ground.LayerAt({Side::kTop, 0});  // also where no point is left
   CountPoints(input, options.min_confidence, &ground);
   FinishPoints(num_threads, &ground);
 
