@@ -5,10 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
-#include "colmap_seapoint/io/colmap/database_images.h"
-#include "colmap_seapoint/io/colmap/database_matches.h"
 #include "colmap_seapoint/mapping/continued_part.h"
 #include "colmap_seapoint/mapping/measure_again.h"
 #include "colmap_seapoint/mapping/sound_adjustment.h"
@@ -92,30 +89,6 @@ std::string MeasureAndAdjust(const AdjustmentJob& job, const ImageIds& held, con
 }
 
 }  // namespace
-
-PicturesToAdd FindPicturesToAdd(const std::filesystem::path& database_path,
-                                const std::filesystem::path& model_path) {
-  const ColmapDatabase database(database_path, ColmapDatabase::Mode::kReadOnly,
-                                ColmapDatabase::Check::kNone);
-  const SparseModel whole = ReadSparseModel(model_path);
-  const ImageIds posed = IdsOf(whole);
-  ImageIds added, neighbours;
-  for (const ImagePair& pair : ReadVerifiedPairs(database)) {
-    for (const auto& [one, other] : {pair, ImagePair(pair.second, pair.first)}) {
-      if (posed.count(one) > 0) continue;
-      added.insert(one);
-      if (posed.count(other) > 0) neighbours.insert(other);
-    }
-  }
-  PicturesToAdd pictures;
-  if (neighbours.empty()) return pictures;
-  for (const DatabaseImage& image : ReadImages(database)) {
-    const bool is_wanted = added.count(image.image_id) + neighbours.count(image.image_id) > 0;
-    if (is_wanted) pictures.names.push_back(image.name);
-  }
-  pictures.part = PartOf(whole, neighbours);
-  return pictures;
-}
 
 AddedPictures AdjustAddedPictures(const AdjustmentJob& job, const std::filesystem::path& before,
                                   const SparseModel& part, const std::filesystem::path& folder) {

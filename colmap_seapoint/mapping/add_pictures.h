@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "colmap_seapoint/base/sparse_model.h"
 #include "colmap_seapoint/mapping/adjust_lens.h"
@@ -16,14 +15,6 @@ struct AddedPictures {
   std::optional<SparseModel> model;  // as `folder` holds it afterwards; nullopt: of no use
   std::string outcome;               // one line for the user
 };
-
-// The pictures of the model that the database ties to others, which are not in it; and these.
-struct PicturesToAdd {
-  std::vector<std::string> names;  // those to come in, and those that they are tied to
-  SparseModel part;                // what the latter show of the model: what the mapper continues
-};
-PicturesToAdd FindPicturesToAdd(const std::filesystem::path& database_path,
-                                const std::filesystem::path& model_path);
 
 // `before` holds a model of ours, `part` what the mapper was given of it (continued_part.h), and
 // `folder` what that made of the part, with more pictures. These are measured again

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <map>
 #include <utility>
-#include <vector>
+
+#include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/colmap/database_images.h"
+#include "colmap_seapoint/io/colmap/database_matches.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -117,6 +121,30 @@ SparseModel PartOf(const SparseModel& whole, const ImageIds& images) {
     }
   }
   return part;
+}
+
+PicturesToAdd FindPicturesToAdd(const std::filesystem::path& database_path,
+                                const std::filesystem::path& model_path) {
+  const ColmapDatabase database(database_path, ColmapDatabase::Mode::kReadOnly,
+                                ColmapDatabase::Check::kNone);
+  const SparseModel whole = ReadSparseModel(model_path);
+  const ImageIds posed = IdsOf(whole);
+  ImageIds added, neighbours;
+  for (const ImagePair& pair : ReadVerifiedPairs(database)) {
+    for (const auto& [one, other] : {pair, ImagePair(pair.second, pair.first)}) {
+      if (posed.count(one) > 0) continue;
+      added.insert(one);
+      if (posed.count(other) > 0) neighbours.insert(other);
+    }
+  }
+  PicturesToAdd pictures;
+  if (neighbours.empty()) return pictures;
+  for (const DatabaseImage& image : ReadImages(database)) {
+    const bool is_wanted = added.count(image.image_id) + neighbours.count(image.image_id) > 0;
+    if (is_wanted) pictures.names.push_back(image.name);
+  }
+  pictures.part = PartOf(whole, neighbours);
+  return pictures;
 }
 
 void PutPartBack(const SparseModel& part, const SparseModel& grown, SparseModel* whole) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "colmap_seapoint/mapping/add_pictures.h"
+#include "colmap_seapoint/mapping/continued_part.h"
 #include "colmap_seapoint/mapping/mapper_process.h"
 #include "colmap_seapoint/mapping/run_mapper.h"
 

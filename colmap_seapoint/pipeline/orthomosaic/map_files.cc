@@ -126,34 +126,30 @@ void MapFiles::Take(MapTile&& tile) {
   TakeSources(column, row, tile.source);
 }
 
-RasterReader& MapFiles::Former(const std::string& name) {
+template <typename T>
+Image<T> MapFiles::Former(const std::string& name, int x, int y, Image<T> tile) {
   std::unique_ptr<RasterReader>& raster = former_rasters_[name];
   if (raster == nullptr) raster = std::make_unique<RasterReader>(former_ / name);
-  return *raster;
-}
-
-template <typename T>
-Image<T> MapFiles::Copy(const std::string& name, const MapGrid::Box& box, int x, int y,
-                        Image<T> tile) {
-  Former(name).ReadWindow(x, y, &tile);
-  Writer(name).WriteTile(box.x / tile_size_, box.y / tile_size_, tile);
+  raster->ReadWindow(x, y, &tile);
   return tile;
 }
 
 MapTile MapFiles::TakeOver(const MapGrid::Box& box, int x, int y) {
+  const int column = box.x / tile_size_, row = box.y / tile_size_;
   MapTile tile;
   tile.x = box.x;
   tile.y = box.y;
-  Copy(kMapColors, box, x, y, Image<uint8_t>(box.width, box.height, 4));
-  Copy(kMapHeights, box, x, y,
-       FloatImage(box.width, box.height, 1, static_cast<float>(kNoHeightInFile)));
-  tile.surface = Copy(kMapSurface, box, x, y, Image<uint8_t>(box.width, box.height));
-  Image<uint32_t> labels(box.width, box.height);
-  Former(kMapSources).ReadWindow(x, y, &labels);
+  Writer(kMapColors)
+      .WriteTile(column, row, Former(kMapColors, x, y, Image<uint8_t>(box.width, box.height, 4)));
+  const FloatImage none(box.width, box.height, 1, static_cast<float>(kNoHeightInFile));
+  Writer(kMapHeights).WriteTile(column, row, Former(kMapHeights, x, y, none));
+  tile.surface = Former(kMapSurface, x, y, Image<uint8_t>(box.width, box.height));
+  Writer(kMapSurface).WriteTile(column, row, tile.surface);
+  const Image<uint32_t> labels = Former(kMapSources, x, y, Image<uint32_t>(box.width, box.height));
   tile.source = Image<int32_t>(box.width, box.height);
   std::transform(labels.data.begin(), labels.data.end(), tile.source.data.begin(),
                  [](uint32_t label) { return static_cast<int32_t>(label) - 1; });
-  TakeSources(box.x / tile_size_, box.y / tile_size_, tile.source);
+  TakeSources(column, row, tile.source);
   return tile;
 }
 

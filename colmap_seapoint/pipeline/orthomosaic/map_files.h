@@ -56,10 +56,9 @@ class MapFiles : public MapTileSink {
   void Open(const std::string& name, RasterLayout layout);
   void RemoveFormer() const;
   void TakeSources(int column, int row, const Image<int32_t>& source);
-  RasterReader& Former(const std::string& name);
-  // The box of a raster, as it was at (x, y), into the new one.
+  // The box of a raster as it was at (x, y); what it did not hold is as in `tile`.
   template <typename T>
-  Image<T> Copy(const std::string& name, const MapGrid::Box& box, int x, int y, Image<T> tile);
+  Image<T> Former(const std::string& name, int x, int y, Image<T> tile);
   template <typename Label>
   void WriteSources(int column, int row, const Image<int32_t>& source);
 
