@@ -29,15 +29,18 @@ std::string SpacingText(double spacing, const GapPlaces& places) {
   return spacing < 0.01 ? Rounded(1e3 * spacing, 2) + " mm" : Rounded(1e2 * spacing, 2) + " cm";
 }
 
+std::string Appended(const std::string& text) { return text.empty() ? "" : "; " + text; }
+
 }  // namespace
 
 std::string CompletenessLine(const CompletenessResult& result, const SparseModel& model,
-                             const GapPlaces& places) {
+                             const GapPlaces& places, const std::vector<GapChange>& changes) {
+  const std::string changed = ChangesText(changes);
   const CoverageAt& at = result.coverage[0];
   std::string line = Formatted("%.1f %% (+- %.1f) of the survey is covered at ", 100 * at.share,
                                100 * result.share_tolerance) +
                      SpacingText(result.spacing, places) + " spacing; ";
-  if (result.gaps.empty()) return line + "no gap to go back to";
+  if (result.gaps.empty()) return line + "no gap to go back to" + Appended(changed);
   const Gap& largest =
       *std::max_element(result.gaps.begin(), result.gaps.end(),
                         [](const Gap& a, const Gap& b) { return a.region.area < b.region.area; });
@@ -49,7 +52,7 @@ std::string CompletenessLine(const CompletenessResult& result, const SparseModel
     line += " near " + model.images[static_cast<size_t>(largest.pictures[0])].name;
   }
   return line + ": " + CauseText(largest.region.cause) + "; a route of " +
-         Rounded(result.route_length, 3) + " " + places.Unit() + " closes them";
+         Rounded(result.route_length, 3) + " " + places.Unit() + " closes them" + Appended(changed);
 }
 
 }  // namespace colmap_seapoint

@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/version.h"
 #include "colmap_seapoint/gaps/gap_files.h"
-#include "colmap_seapoint/io/files/input_stream.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -34,7 +31,7 @@ Json GapJson(const Gap& gap, const SparseModel& model) {
 }
 
 // Of the pictures' own cells: what was covered, what not, and the commonest causes.
-Json PictureJson(const PictureRecord& record, const std::string& name) {
+Json PictureJson(const PictureRecord& record, const PosedImage& image) {
   std::array<int64_t, kNumGapCauses> counts = {};
   for (const GapCause cause : record.causes) ++counts[static_cast<size_t>(cause)];
   Json causes = Json::object();
@@ -43,7 +40,8 @@ Json PictureJson(const PictureRecord& record, const std::string& name) {
     causes[GapCauseName(static_cast<GapCause>(c))] =
         static_cast<double>(counts[c]) / static_cast<double>(record.causes.size());
   }
-  return {{"name", name},
+  return {{"name", image.name},
+          {"cam_from_world", PoseNumbers(image.cam_from_world)},
           {"is_bad", record.is_bad},
           {"sharpness", record.sharpness},
           {"covered", record.Share(CellState::kCovered)},
@@ -85,23 +83,22 @@ Json MissingJson(const CompletenessResult& result) {
   return missing;
 }
 
-FormerOutline ReadGap(const Json& json) {
-  FormerOutline gap;
-  gap.id = json.at("id").get<int>();
-  ParseLayerName(json.at("layer").get<std::string>(), &gap.layer);
-  for (const Json& ring : json.at("outline")) {
-    auto& corners = gap.rings.emplace_back();
-    for (const Json& p : ring) {
-      corners.emplace_back(p.at(0).get<double>(), p.at(1).get<double>(), p.at(2).get<double>());
-    }
+Json ChangesJson(const std::vector<GapChange>& changes) {
+  Json gaps = Json::array();
+  for (const GapChange& change : changes) {
+    Json& gap = gaps.emplace_back(Json{{"id", change.id},
+                                       {"now", GapFateName(change.fate)},
+                                       {"area_before", change.area_before},
+                                       {"area", change.area_now}});
+    if (change.joined_to > 0) gap["part_of"] = change.joined_to;
   }
-  return gap;
+  return gaps;
 }
 
 }  // namespace
 
 std::string CompletenessJson(const CompletenessResult& result, const SparseModel& model,
-                             const GapPlaces& places) {
+                             const GapPlaces& places, const std::vector<GapChange>& changes) {
   Json json = {{"version", Version()},
                {"spacing", result.spacing},
                {"unit", places.Unit()},
@@ -126,31 +123,16 @@ std::string CompletenessJson(const CompletenessResult& result, const SparseModel
   }
   json["gaps"] = std::move(gaps);
   json["last_gap_id"] = std::max(last_id, result.last_id);
+  if (!changes.empty()) json["gaps_before"] = ChangesJson(changes);
   Json lost = Json::array();
   for (const LostRun& run : result.lost_runs) lost.push_back(LostRunJson(run, model));
   json["pictures_without_pose"] = std::move(lost);
   Json pictures = Json::array();
   for (size_t i = 0; i < result.records.size(); ++i) {
-    pictures.push_back(PictureJson(result.records[i], model.images[i].name));
+    pictures.push_back(PictureJson(result.records[i], model.images[i]));
   }
   json["pictures"] = std::move(pictures);
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-FormerReport ReadFormerReport(const std::filesystem::path& path) {
-  FormerReport report;
-  const auto in = OpenIfThere(path);
-  if (in == nullptr) return report;
-  const std::string text{std::istreambuf_iterator<char>(*in), {}};
-  try {
-    const Json json = Json::parse(text);
-    report.last_id = json.at("last_gap_id").get<int>();
-    for (const Json& gap : json.at("gaps")) report.gaps.push_back(ReadGap(gap));
-  } catch (const Json::exception& e) {
-    throw Error(path.string(), "is no report of ours (" + std::string(e.what()) + ")",
-                "move it away, or choose another --output_path");
-  }
-  return report;
 }
 
 }  // namespace colmap_seapoint

@@ -1,10 +1,12 @@
 #include "colmap_seapoint/mapping/add_pictures.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/mapping/continued_part.h"
 #include "colmap_seapoint/mapping/measure_again.h"
 #include "colmap_seapoint/mapping/sound_adjustment.h"
 #include "colmap_seapoint/remeasuring/extend_tracks.h"
@@ -12,33 +14,17 @@
 namespace colmap_seapoint {
 namespace {
 
-using ImageIds = std::set<uint32_t>;
-
-ImageIds IdsOf(const SparseModel& model) {
-  ImageIds ids;
-  for (const PosedImage& image : model.images) ids.insert(image.image_id);
-  return ids;
-}
-
-// COLMAP makes unit vectors of rotations again, which moves their last bits. False where a picture
-// or a lens is not as it was.
-bool RestoreBefore(const SparseModel& before, SparseModel* model) {
-  std::map<uint32_t, const PosedImage*> images;
-  for (const PosedImage& image : before.images) images[image.image_id] = &image;
-  size_t num_found = 0;
-  for (PosedImage& image : model->images) {
-    const auto was = images.find(image.image_id);
-    if (was == images.end()) continue;
-    if (was->second->name != image.name) return false;
-    image.cam_from_world = was->second->cam_from_world;
-    ++num_found;
+// Whether all pictures of `part` are there under their names, and no other lens than the whole has.
+bool IsGrownFrom(const SparseModel& part, const SparseModel& whole, const SparseModel& grown) {
+  std::map<uint32_t, std::string> names;
+  for (const PosedImage& image : grown.images) names[image.image_id] = image.name;
+  for (const PosedImage& image : part.images) {
+    const auto found = names.find(image.image_id);
+    if (found == names.end() || found->second != image.name) return false;
   }
-  for (auto& [id, camera] : model->cameras) {
-    const auto was = before.cameras.find(id);
-    if (was == before.cameras.end()) return false;
-    camera = was->second;
-  }
-  return num_found == images.size();
+  return std::all_of(grown.images.begin(), grown.images.end(), [&](const PosedImage& image) {
+    return whole.cameras.count(image.camera_id) > 0;
+  });
 }
 
 // The pictures of `added`, those that see a point of theirs, and these points alone.
@@ -105,11 +91,12 @@ std::string MeasureAndAdjust(const AdjustmentJob& job, const ImageIds& held, con
 }  // namespace
 
 AddedPictures AdjustAddedPictures(const AdjustmentJob& job, const std::filesystem::path& before,
-                                  const std::filesystem::path& folder) {
-  const SparseModel was = ReadSparseModel(before, ModelContent::kPosesAndPoints);
-  SparseModel model = ReadSparseModel(folder);
-  if (!RestoreBefore(was, &model)) return {};
-  const ImageIds held = IdsOf(was);
+                                  const SparseModel& part, const std::filesystem::path& folder) {
+  SparseModel model = ReadSparseModel(before);
+  const ImageIds held = IdsOf(model);
+  const SparseModel grown = ReadSparseModel(folder);
+  if (!IsGrownFrom(part, model, grown)) return {};
+  PutPartBack(part, grown, &model);
   ImageIds added = IdsOf(model);
   for (const uint32_t id : held) added.erase(id);
   AddedPictures result;
@@ -121,7 +108,7 @@ AddedPictures AdjustAddedPictures(const AdjustmentJob& job, const std::filesyste
   }
   SortImagesById(&model);
   WriteSparseModelBinary(folder, model);
-  result.model = ReadSparseModel(folder);
+  result.model = std::move(model);
   return result;
 }
 

@@ -16,13 +16,13 @@ struct AddedPictures {
   std::string outcome;               // one line for the user
 };
 
-// `before` holds a model of ours, `folder` what COLMAP's mapper made of it (--input_path), with
-// more pictures. These are measured again (measure_again.h) together with those that see the same
-// points, and their poses and these points are adjusted; poses and lenses of `before` stay as they
-// are read. Of no use is a model that has lost one of the pictures of `before`, or lenses that it
-// did not have. Writes `folder`. Throws Error when a model cannot be read or written. The same
-// model for any number of threads.
+// `before` holds a model of ours, `part` what the mapper was given of it (continued_part.h), and
+// `folder` what that made of the part, with more pictures. These are measured again
+// (measure_again.h) together with those that see the same points, and their poses and these points
+// are adjusted; poses and lenses of `before` stay as they are. Of no use is a part that has lost
+// one of its pictures, or has lenses that were not there. Writes the whole model into `folder`.
+// Throws Error when a model cannot be read or written. The same model for any number of threads.
 AddedPictures AdjustAddedPictures(const AdjustmentJob& job, const std::filesystem::path& before,
-                                  const std::filesystem::path& folder);
+                                  const SparseModel& part, const std::filesystem::path& folder);
 
 }  // namespace colmap_seapoint

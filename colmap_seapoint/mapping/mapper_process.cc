@@ -49,7 +49,9 @@ std::vector<std::string> Arguments(const ColmapProgram& colmap, const MapperCall
     arguments.insert(arguments.end(), {"--input_path", call.input_path.string()});
   }
   if (!call.pictures.empty()) {
-    const fs::path list = call.output_path / "pictures.txt";
+    // Not beside a model that is continued, whose folder it would become part of.
+    const fs::path& folder = call.input_path.empty() ? call.output_path : call.input_path;
+    const fs::path list = folder / "pictures.txt";
     std::string names;
     for (const std::string& name : call.pictures) names += name + "\n";
     WriteTextFile(list, names);

@@ -13,7 +13,8 @@ struct MapperCall {
   std::string command;  // "mapper" or "global_mapper"
   std::filesystem::path database_path;
   std::filesystem::path image_path;
-  std::filesystem::path input_path;   // of the model that is continued; empty = begun anew
+  std::filesystem::path input_path;   // of the model that is continued, and of nothing else (the
+                                      // list of pictures is put there); empty = begun anew
   std::filesystem::path output_path;  // an empty folder; gets 0/, 1/ ..., or the continued model
   MapperOptions options;
   std::vector<std::string> pictures;  // the only ones to be mapped; empty = all

@@ -52,6 +52,7 @@ struct Trial {
   bool holds_distortion = false;
   bool must_succeed = false;
   fs::path continued_model;
+  SparseModel part;                 // of it, as the mapper got it
   std::vector<fs::path> models;     // those of enough points
   std::vector<std::string> lenses;  // what became of each model's lens
   bool lenses_are_sound = true;
@@ -166,9 +167,13 @@ class MapperRounds {
     Trial trial;
     trial.folder = folder_ / ("trial_" + name);
     trial.continued_model = plan.continued_model;
+    trial.part = plan.added.part;
     // A model that is continued is written to where others get a folder each.
     const fs::path output = plan.continued_model.empty() ? trial.folder : trial.folder / "0";
     fs::create_directories(output);
+    if (!plan.continued_model.empty() && plan.added.names.empty()) {
+      return ModelAsItIs(std::move(trial), output);
+    }
     MapperCall call = CallOf(job_, plan, output, name);
     if (num_models_ > 0) call.pictures.assign(missing_.begin(), missing_.end());
     call.num_pictures = missing_.size();
@@ -186,6 +191,17 @@ class MapperRounds {
     return trial;
   }
 
+  // Pictures that nothing ties to the model are the next round's.
+  static Trial ModelAsItIs(Trial trial, const fs::path& output) {
+    const SparseModel model = ReadSparseModel(trial.continued_model);
+    WriteSparseModelBinary(output, model);
+    for (const PosedImage& image : model.images) trial.pictures.insert(image.name);
+    trial.models.push_back(output);
+    trial.lenses.emplace_back("nothing ties the new pictures to the " +
+                              std::to_string(model.images.size()) + " that were there");
+    return trial;
+  }
+
   // As if the mapper had failed.
   static Trial WithoutModels(Trial trial) {
     trial.models.clear();
@@ -200,7 +216,7 @@ class MapperRounds {
     std::string lens;
     if (!trial->continued_model.empty()) {
       AddedPictures added =
-          AdjustAddedPictures(JobOf(*trial, trial_name), trial->continued_model, path);
+          AdjustAddedPictures(JobOf(*trial, trial_name), trial->continued_model, trial->part, path);
       if (!added.model) return false;
       lens = added.outcome;
       model = *std::move(added.model);

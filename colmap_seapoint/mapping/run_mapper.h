@@ -13,7 +13,7 @@ namespace colmap_seapoint {
 
 // Raise it whenever the same database and options give other models than before
 // (tests/mapping/mapper_version_test.cc watches).
-inline constexpr char kMapperVersion[] = "15";
+inline constexpr char kMapperVersion[] = "16";
 
 // Whose the lens is.
 enum class LensRule {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "colmap_seapoint/io/colmap/colmap_database.h"
+#include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/colmap/database_copy.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/mapping/adjust_lens.h"
@@ -25,6 +26,8 @@ constexpr char kGlobalRefineDistortion[] = "GlobalMapper.ba_refine_extra_params"
 constexpr char kRefineFocal[] = "Mapper.ba_refine_focal_length";
 constexpr char kFixExisting[] = "Mapper.fix_existing_images";
 constexpr char kMaxRefinements[] = "Mapper.ba_global_max_refinements";
+constexpr char kMaxLocalRefinements[] = "Mapper.ba_local_max_refinements";
+constexpr char kMaxLocalIterations[] = "Mapper.ba_local_max_num_iterations";
 constexpr char kMaxIterations[] = "Mapper.ba_global_max_num_iterations";
 constexpr char kMinInitialAngle[] = "Mapper.init_min_tri_angle";
 constexpr double kWideFocal = 0.7;  // of the longer side: 71 degrees
@@ -158,18 +161,29 @@ TrialPlan WideLensPlan(const ColmapProgram& colmap, const MapperJob& job, const 
 }
 
 // The pictures that came in since, added to the model that there is, which stays as it is.
-std::optional<TrialPlan> ContinuedPlan(const ColmapProgram& colmap, const MapperJob& job) {
+std::optional<TrialPlan> ContinuedPlan(const ColmapProgram& colmap, const MapperJob& job,
+                                       const fs::path& folder) {
   if (!job.continued_model) return std::nullopt;
   for (const char* name : {kFixExisting, kRefineFocal, kRefineDistortion}) {
     if (!colmap.HasMapperOption(name)) return std::nullopt;
   }
   TrialPlan plan = PlainPlan(job, "_continued", job.first_round);
   plan.continued_model = *job.continued_model;
+  plan.part_path = folder.parent_path() / "trial_part";
+  plan.prepare = [&job](TrialPlan* prepared) {
+    prepared->added = FindPicturesToAdd(job.database_path, prepared->continued_model);
+    if (prepared->added.names.empty()) return;
+    WriteSparseModelBinary(prepared->part_path, prepared->added.part);
+  };
   plan.options[kFixExisting] = "1";
   plan.options[kRefineFocal] = plan.options[kRefineDistortion] = "0";
-  // Of all points there are, though few of them are new: ours follows.
-  for (const char* name : {kMaxRefinements, kMaxIterations}) {
-    if (colmap.HasMapperOption(name)) plan.options[name] = name == kMaxIterations ? "5" : "1";
+  // The poses around are held, and our own adjustment follows.
+  const std::pair<const char*, const char*> efforts[] = {{kMaxRefinements, "1"},
+                                                         {kMaxIterations, "3"},
+                                                         {kMaxLocalRefinements, "1"},
+                                                         {kMaxLocalIterations, "4"}};
+  for (const auto& [name, value] : efforts) {
+    if (colmap.HasMapperOption(name)) plan.options[name] = value;
   }
   return plan;
 }
@@ -183,7 +197,7 @@ std::vector<TrialPlan> PlanFirstRound(const ColmapProgram& colmap, const MapperJ
     HoldLens(colmap, job.lens, &plan);
     plans.push_back(std::move(plan));
   };
-  if (const auto continued = ContinuedPlan(colmap, job)) plans.push_back(*continued);
+  if (const auto continued = ContinuedPlan(colmap, job, folder)) plans.push_back(*continued);
   if (job.global_round) add(GlobalPlan(job));
   if (job.thins_matches) add(ThinnedPlan(colmap, job, folder));
   if (job.initial_pair_round) add(PlainPlan(job, "_initial_pair", *job.initial_pair_round));
@@ -213,7 +227,8 @@ MapperCall CallOf(const MapperJob& job, const TrialPlan& plan, const fs::path& o
                   const std::string& log_name) {
   MapperCall call;
   call.command = plan.command;
-  call.input_path = plan.continued_model;
+  call.input_path = plan.part_path;
+  call.pictures = plan.added.names;
   call.database_path = plan.database_path;
   call.image_path = job.image_path;
   call.output_path = output_path;

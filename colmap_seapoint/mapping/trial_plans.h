@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "colmap_seapoint/mapping/continued_part.h"
 #include "colmap_seapoint/mapping/mapper_process.h"
 #include "colmap_seapoint/mapping/run_mapper.h"
 
@@ -18,6 +19,8 @@ struct TrialPlan {
   std::string command = kMapper;
   std::filesystem::path database_path;
   std::filesystem::path continued_model;     // whose pictures and lenses stay; empty: none
+  std::filesystem::path part_path;           // of it the part that the mapper is given
+  PicturesToAdd added;                       // to it; without names, nothing ties any to it
   std::filesystem::path triangulation_path;  // the database whose matches become the points
   MapperOptions options;
   bool holds_distortion = false;  // by the options

@@ -7,6 +7,7 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/median.h"
 #include "colmap_seapoint/base/parallel.h"
+#include "colmap_seapoint/orthomosaic/continue_map.h"
 #include "colmap_seapoint/orthomosaic/relief/cloud_tiles.h"
 #include "colmap_seapoint/orthomosaic/relief/relief.h"
 #include "colmap_seapoint/orthomosaic/render_tile.h"
@@ -74,18 +75,12 @@ class TileWriter {
       : sink_(*sink), summary_(*summary), is_used_(num_pictures, 0) {}
 
   void Take(MapTile&& tile) {
-    for (const uint8_t flags : tile.surface.data) {
-      summary_.num_surface_pixels += flags != 0;
-      summary_.num_bridged_pixels += (flags & kBridged) != 0;
-      summary_.num_filled_pixels += (flags & kFilled) != 0;
-      summary_.num_overhang_pixels += (flags & kOverhang) != 0;
-      summary_.num_colored_pixels += flags != 0 && (flags & kUncolored) == 0;
-    }
-    for (const int32_t source : tile.source.data) {
-      if (source != kNoSource) is_used_[static_cast<size_t>(source)] = 1;
-    }
+    Count(tile);
+    ++summary_.num_tiles_drawn;
     sink_.Take(std::move(tile));
   }
+
+  void TakeOver(const MapGrid::Box& box, int x, int y) { Count(sink_.TakeOver(box, x, y)); }
 
   std::vector<size_t> PicturesUsed() const {
     std::vector<size_t> used;
@@ -96,36 +91,75 @@ class TileWriter {
   }
 
  private:
+  void Count(const MapTile& tile) {
+    ++summary_.num_tiles;
+    for (const uint8_t flags : tile.surface.data) {
+      summary_.num_surface_pixels += flags != 0;
+      summary_.num_bridged_pixels += (flags & kBridged) != 0;
+      summary_.num_filled_pixels += (flags & kFilled) != 0;
+      summary_.num_overhang_pixels += (flags & kOverhang) != 0;
+      summary_.num_colored_pixels += flags != 0 && (flags & kUncolored) == 0;
+    }
+    for (const int32_t source : tile.source.data) {
+      if (source != kNoSource) is_used_[static_cast<size_t>(source)] = 1;
+    }
+  }
+
   MapTileSink& sink_;
   OrthomosaicSummary& summary_;
   std::vector<uint8_t> is_used_;
 };
 
-void RenderTiles(const MapScene& scene, int num_threads,
+// Whether the tile has a block with a surface.
+bool HasBlocks(const BlockRelief& blocks, const MapGrid::Box& box) {
+  for (int y = box.y / kBlockSize; y * kBlockSize < box.y + box.height; ++y) {
+    for (int x = box.x / kBlockSize; x * kBlockSize < box.x + box.width; ++x) {
+      if (!std::isnan(blocks.mean[blocks.At(x, y)])) return true;
+    }
+  }
+  return false;
+}
+
+// What is not drawn is taken over.
+void RenderTiles(const MapScene& scene, const MapGrowth* growth, int num_threads,
                  const std::function<void(double)>& progress, MapPictures* pictures,
                  TileWriter* writer) {
-  std::vector<int> tiles = TilesAlongCurve(scene.relief.Grid());
-  tiles.erase(std::remove_if(tiles.begin(), tiles.end(),
-                             [&](int tile) { return !scene.relief.HasSurface(tile); }),
-              tiles.end());
+  const MapGrid& grid = scene.relief.Grid();
+  std::vector<int> tiles = TilesAlongCurve(grid);
+  tiles.erase(
+      std::remove_if(tiles.begin(), tiles.end(),
+                     [&](int tile) { return !HasBlocks(scene.relief.Blocks(), grid.Tile(tile)); }),
+      tiles.end());
   OrderedPipeline<MapTile>(
       num_threads, static_cast<int64_t>(tiles.size()),
       std::min(EffectiveNumThreads(num_threads), kMaxTilesAtOnce),
-      [&](int64_t i) { return RenderTile(scene, tiles[static_cast<size_t>(i)], pictures); },
-      [&](int64_t i, MapTile&& tile) {
-        writer->Take(std::move(tile));
+      [&](int64_t i) {
+        const int tile = tiles[static_cast<size_t>(i)];
+        return scene.relief.HasSurface(tile) ? RenderTile(scene, tile, pictures) : MapTile();
+      },
+      [&](int64_t i, MapTile&& drawn) {
+        const int tile = tiles[static_cast<size_t>(i)];
+        if (scene.relief.HasSurface(tile)) {
+          writer->Take(std::move(drawn));
+        } else {
+          const MapGrid::Box box = grid.Tile(tile);
+          writer->TakeOver(box, box.x - growth->left * kBlockSize,
+                           box.y - growth->above * kBlockSize);
+        }
         progress(static_cast<double>(i + 1) / static_cast<double>(tiles.size()));
       });
 }
 
 // The points by tiles are gone again when the relief is there.
-Relief MakeRelief(const OrthomosaicOptions& options, const OrthomosaicInputs& inputs, double ground,
-                  OrthomosaicSummary* summary) {
-  const CloudTiles cloud(inputs.cloud_path, summary->frame.map_from_cloud, summary->grid, ground,
-                         inputs.temporary_folder);
-  summary->cell_size = cloud.UsualCellSize();
+Relief MakeRelief(const OrthomosaicOptions& options, const OrthomosaicInputs& inputs,
+                  const MapGrowth* growth, OrthomosaicSummary* summary) {
+  const CloudTiles cloud(inputs.cloud_path, summary->frame.map_from_cloud, summary->grid,
+                         summary->memory.ground, inputs.temporary_folder,
+                         growth ? growth->relief.is_wanted : std::vector<uint8_t>());
+  summary->cell_size = growth ? inputs.before->cell_size : cloud.UsualCellSize();
   summary->num_points_outside = cloud.NumOutside();
-  return Relief(cloud, summary->grid, options.fill, options.num_threads, inputs.temporary_folder);
+  return Relief(cloud, summary->grid, options.fill, options.num_threads, inputs.temporary_folder,
+                growth ? &growth->relief : nullptr);
 }
 
 // nullopt where the survey does not tell what the water does; else the sources are restored.
@@ -139,6 +173,51 @@ std::optional<Restoration> RestoreColors(const Relief& relief, const std::vector
   return restoration;
 }
 
+// Frame and grid of a map, or those of the map before.
+std::optional<MapGrowth> LayOut(const OrthomosaicOptions& options, const OrthomosaicInputs& inputs,
+                                std::vector<MapView>* views, OrthomosaicSummary* summary) {
+  const MapMemory* before = inputs.before;
+  const std::vector<Eigen::Vector3d> cloud_sample = SampleCloud(inputs.cloud_path);
+  summary->frame = before ? before->frame
+                          : FindMapFrame(options.plane, inputs.model, cloud_sample, inputs.units);
+  const std::vector<Eigen::Vector3d> sample = InMap(summary->frame, cloud_sample);
+  *views = MakeMapViews(inputs.model, summary->frame.map_from_cloud);
+  summary->gsd = before ? before->gsd : FindGsd(*views, sample, inputs.cloud_path.string());
+  summary->memory.ground = before ? before->ground : MedianHeight(sample);
+  const double pixel_size = options.pixel_size > 0 ? options.pixel_size : summary->gsd;
+  summary->grid = MakeMapGrid(sample, pixel_size);
+  if (before == nullptr) return std::nullopt;
+  MapGrowth growth = GrowMap(*before, summary->grid, inputs.cloud_path, *views);
+  summary->grid = growth.grid;
+  return growth;
+}
+
+Exposure FindExposure(const OrthomosaicOptions& options, const MapMemory* before,
+                      const Relief& relief, const std::vector<MapView>& views,
+                      const SourceBlocks& sources) {
+  if (!options.balance) return EqualExposure(views.size());
+  if (before) return ContinueExposure(before->exposure, relief, views, sources);
+  return BalanceExposure(relief, views, sources);
+}
+
+void Remember(const OrthomosaicInputs& inputs, const Relief& relief, SourceBlocks sources,
+              const Exposure& exposure, OrthomosaicSummary* summary) {
+  MapMemory& memory = summary->memory;
+  memory.frame = summary->frame;
+  memory.grid = summary->grid;
+  memory.gsd = summary->gsd;
+  memory.cell_size = summary->cell_size;
+  memory.first_pictures =
+      inputs.before ? inputs.before->first_pictures : inputs.model.images.size();
+  memory.num_points = NumPointsOf(inputs.cloud_path);
+  memory.mean = relief.Blocks().mean;
+  memory.lowest = relief.Blocks().lowest;
+  memory.highest = relief.Blocks().highest;
+  sources.is_kept.clear();
+  memory.sources = std::move(sources);
+  memory.exposure = exposure;
+}
+
 }  // namespace
 
 OrthomosaicSummary MakeOrthomosaic(const OrthomosaicOptions& options,
@@ -147,20 +226,19 @@ OrthomosaicSummary MakeOrthomosaic(const OrthomosaicOptions& options,
   const auto progress = [&](double before, double share, double done) {
     if (inputs.progress) inputs.progress(before + share * done);
   };
-  const std::vector<Eigen::Vector3d> cloud_sample = SampleCloud(inputs.cloud_path);
-  summary.frame = FindMapFrame(options.plane, inputs.model, cloud_sample, inputs.units);
-  const std::vector<Eigen::Vector3d> sample = InMap(summary.frame, cloud_sample);
-  const std::vector<MapView> views = MakeMapViews(inputs.model, summary.frame.map_from_cloud);
-  summary.gsd = FindGsd(views, sample, inputs.cloud_path.string());
-  summary.grid = MakeMapGrid(sample, options.pixel_size > 0 ? options.pixel_size : summary.gsd);
-
-  const double ground = MedianHeight(sample);
-  const Relief relief = MakeRelief(options, inputs, ground, &summary);
+  std::vector<MapView> views;
+  const std::optional<MapGrowth> growth = LayOut(options, inputs, &views, &summary);
+  const MapGrowth* const grown = growth ? &*growth : nullptr;
+  const Relief relief = MakeRelief(options, inputs, grown, &summary);
   progress(0, kReliefShare, 1);
 
-  MapPictures pictures(inputs.read, Reductions(views, ground, summary.grid.pixel_size),
+  MapPictures pictures(inputs.read,
+                       Reductions(views, summary.memory.ground, summary.grid.pixel_size),
                        options.picture_bytes);
-  SourceBlocks sources = FindSources(relief, views, options.num_threads);
+  SourceBlocks sources =
+      grown ? FindSources(relief, views, options.num_threads, &inputs.before->sources,
+                          KeptSlots(*inputs.before, *grown, relief, views))
+            : FindSources(relief, views, options.num_threads);
   const auto num_views = static_cast<double>(views.size());
   summary.pictures_unread = LookAtSources(
       relief, views, options.num_threads,
@@ -168,19 +246,19 @@ OrthomosaicSummary MakeOrthomosaic(const OrthomosaicOptions& options,
       &pictures, &sources);
   const std::optional<Restoration> restoration =
       options.restore ? RestoreColors(relief, views, &sources, &summary) : std::nullopt;
-  const Exposure exposure =
-      options.balance ? BalanceExposure(relief, views, sources) : EqualExposure(views.size());
+  const Exposure exposure = FindExposure(options, inputs.before, relief, views, sources);
   ChooseSources(relief.Blocks(), exposure, options.num_threads, &sources);
 
   sink->Begin(summary.frame, summary.grid);
   TileWriter writer(views.size(), sink, &summary);
   constexpr double kBefore = kReliefShare + kSourcesShare;
   RenderTiles(
-      {relief, views, sources, exposure, restoration ? &*restoration : nullptr},
+      {relief, views, sources, exposure, restoration ? &*restoration : nullptr}, grown,
       options.num_threads, [&](double share) { progress(kBefore, 1 - kBefore, share); }, &pictures,
       &writer);
   summary.pictures_used = writer.PicturesUsed();
   summary.num_picture_reads = pictures.NumReads();
+  Remember(inputs, relief, std::move(sources), exposure, &summary);
   return summary;
 }
 

@@ -15,13 +15,14 @@
 #include "colmap_seapoint/orthomosaic/ground/map_frame.h"
 #include "colmap_seapoint/orthomosaic/ground/map_grid.h"
 #include "colmap_seapoint/orthomosaic/ground/map_tile.h"
+#include "colmap_seapoint/orthomosaic/map_memory.h"
 #include "colmap_seapoint/orthomosaic/sources/map_pictures.h"
 #include "colmap_seapoint/water/water_model.h"
 
 namespace colmap_seapoint {
 
 // Raised whenever a map changes for the same inputs and options.
-inline constexpr char kOrthomosaicVersion[] = "2";
+inline constexpr char kOrthomosaicVersion[] = "3";
 
 struct OrthomosaicOptions {
   MapFrameOptions plane;
@@ -34,13 +35,16 @@ struct OrthomosaicOptions {
 };
 
 struct OrthomosaicInputs {
-  const SparseModel& model;
+  const SparseModel& model;                // of a map that is continued: its pictures first
   std::filesystem::path cloud_path;        // PLY, in the model's frame
   std::optional<ModelUnits> units;         // of the model
   MapPictureReader read;                   // pictures of the model
   std::filesystem::path temporary_folder;  // some 16 bytes a point and 5 a pixel
   // Told the share of the work that is done, from one thread at a time; empty: nobody asks.
   std::function<void(double)> progress = nullptr;
+  // The map that is continued, of a cloud whose points come first in this one; of colours that are
+  // not restored. nullptr: there is none.
+  const MapMemory* before = nullptr;
 };
 
 struct OrthomosaicSummary {
@@ -59,6 +63,8 @@ struct OrthomosaicSummary {
       water;  // with `restore`; where it is not determined, nothing is restored
   std::vector<size_t> pictures_used;    // positions in the model's images, ascending
   std::vector<size_t> pictures_unread;  // those that could not be read, or are of another shape
+  size_t num_tiles = 0, num_tiles_drawn = 0;  // with a surface; the others are as they were
+  MapMemory memory;                           // for the map that continues this one
 };
 
 // Finds the plane and the grid, makes the relief, chooses a picture for every part of it, and hands

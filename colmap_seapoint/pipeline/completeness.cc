@@ -257,8 +257,22 @@ void CheckResult(const CompletenessReporterOptions& options, const CompletenessR
   }
 }
 
+// In the frame of the model.
+FormerReport FormerOf(const CompletenessReporterOptions& options, const SparseModel& model) {
+  FormerReport former = options.former
+                            ? *options.former
+                            : ReadFormerReport(fs::path(options.output_path) / kCompletenessFile);
+  const size_t num_gaps = former.gaps.size();
+  MoveToModel(model, &former);
+  if (former.gaps.size() < num_gaps) {
+    LogInfo("The model is not the one of the report before: its gaps get new numbers");
+  }
+  return former;
+}
+
 CompletenessResult Assess(const CompletenessReporterOptions& options, const SparseModel& model,
-                          const std::optional<ModelUnits>& units, Seen* seen, RunReport* report) {
+                          const std::optional<ModelUnits>& units, const FormerReport& former,
+                          Seen* seen, RunReport* report) {
   CompletenessInput input;
   input.model = &model;
   input.num_points = CloudReader(options.cloud_path).NumPoints();
@@ -275,8 +289,7 @@ CompletenessResult Assess(const CompletenessReporterOptions& options, const Spar
   input.frame_of = [&](const auto& sample) { return FindPlan(options, model, units, sample); };
   input.lost = LostPictures(options, model);
   input.posed_elsewhere = options.posed_elsewhere;
-  FormerReport former = ReadFormerReport(fs::path(options.output_path) / "completeness.json");
-  input.former = std::move(former.gaps);
+  input.former = former.gaps;
   input.last_id = former.last_id;
   input.facts = MeasurePictures(options, model, &progress, seen, report);
   CompletenessResult result =
@@ -377,7 +390,7 @@ CompletenessReport ReportCompleteness(const CompletenessReporterOptions& options
   RunReport& report = done.run = StartReport("completeness_reporter", options, options.run);
   OutputFolder folder(options.output_path, "--output_path");
   folder.Claim(
-      {"index.html", "completeness.json", "gaps.geojson", "gaps.csv", "map.png", "run.json"});
+      {"index.html", kCompletenessFile, "gaps.geojson", "gaps.csv", "map.png", "run.json"});
   {
     const StageTimer timer(&report, "completeness_reporter");
     const std::optional<ModelUnits> units = ReadModelUnits(options.input_path);
@@ -385,7 +398,9 @@ CompletenessReport ReportCompleteness(const CompletenessReporterOptions& options
     const SparseModel model = ReadModel(options);
     report.images_in = static_cast<int64_t>(model.images.size());
     Seen seen;
-    const CompletenessResult result = Assess(options, model, units, &seen, &report);
+    const FormerReport former = FormerOf(options, model);
+    const CompletenessResult result = Assess(options, model, units, former, &seen, &report);
+    const std::vector<GapChange> changes = ChangesOf(former, result);
     report.images_used = report.images_in - static_cast<int64_t>(report.left_out.size());
     const GapPlaces places(units.value_or(ModelUnits()), result.ground.frame);
     const fs::path& output = folder.Path();
@@ -393,8 +408,8 @@ CompletenessReport ReportCompleteness(const CompletenessReporterOptions& options
     WriteTextFile(output / "gaps.csv", GapsCsv(result, model, places));
     WriteGeographic(result, places, &folder);
     WriteMaps(result, places.Unit(), &folder);
-    WriteTextFile(output / "completeness.json", CompletenessJson(result, model, places));
-    done.answer = CompletenessLine(result, model, places);
+    WriteTextFile(output / kCompletenessFile, CompletenessJson(result, model, places, changes));
+    done.answer = CompletenessLine(result, model, places, changes);
     WriteTextFile(output / "index.html",
                   CompletenessPage({model, result, places, done.answer, options.image_path,
                                     options.cloud_path, options.map_path, std::move(seen.points),

@@ -2,15 +2,19 @@
 // way to close it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "colmap_seapoint/base/options.h"
 #include "colmap_seapoint/base/run_options.h"
+#include "colmap_seapoint/gaps/former_report.h"
 #include "colmap_seapoint/io/files/run_report.h"
 #include "densify/completeness/completeness_options.h"
 
 namespace colmap_seapoint {
+
+inline constexpr char kCompletenessFile[] = "completeness.json";
 
 struct CompletenessReporterOptions {
   std::string image_path;   // folder of the pictures; empty: nothing is known of texture and blur
@@ -23,6 +27,9 @@ struct CompletenessReporterOptions {
   // Pictures of image_path that are in another model of the same dive: not lost, but not to be
   // placed here either. Set by the chain.
   std::vector<std::string> posed_elsewhere;
+  // The report before, whose gaps are looked for again; nullopt: what lies in output_path. Set by
+  // the chain, whose interrupted runs find a report there that is none before.
+  std::optional<FormerReport> former;
   CompletenessOptions completeness;
   bool self_check = false;  // measures the tolerance (densify/self_check)
   RunOptions run;

@@ -6,6 +6,7 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/io/files/content_hash.h"
 #include "colmap_seapoint/io/files/run_report_json.h"
 #include "colmap_seapoint/io/image/picture_masks.h"
 #include "colmap_seapoint/orthomosaic/orthomosaic.h"
@@ -17,7 +18,7 @@ namespace colmap_seapoint {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr char kPrefix[] = "completeness_";
+constexpr char kPrefix[] = "completeness_", kFormerPrefix[] = "completeness_before_";
 
 struct Assessment {
   std::string answer;
@@ -69,9 +70,43 @@ std::string InputsOf(const CompletenessReporterOptions& reporter, const ModelSum
   return text;
 }
 
-std::string AnswerOf(const CompletenessReporterOptions& reporter, const Stage& stage,
-                     const std::string& number, WorkspaceState* state, RunReport* report) {
+// The report before the one of this cloud, kept until pictures come in: a run that is interrupted
+// while it writes, or that makes the report again, compares with the same one.
+struct FormerRecord {
+  std::string cloud;   // of the report that is compared with it
+  std::string report;  // FormerReportText
+};
+
+void to_json(nlohmann::ordered_json& json, const FormerRecord& record) {
+  json = {{"cloud", record.cloud}, {"report", record.report}};
+}
+
+void from_json(const nlohmann::ordered_json& json, FormerRecord& record) {
+  record = {json.at("cloud").get<std::string>(), json.at("report").get<std::string>()};
+}
+
+// Of the model of that number.
+FormerReport FormerReportOf(const CompletenessReporterOptions& reporter, const std::string& number,
+                            const std::string& cloud, WorkspaceState* state) {
+  const Stage stage = {kFormerPrefix + number, "1", "", ""};
+  FormerRecord record = ResultIfDone<FormerRecord>(*state, stage).value_or(FormerRecord());
+  if (record.cloud != cloud || record.report.empty()) {
+    // What an interrupted run has left there is no report.
+    if (record.report.empty() || state->Read(kPrefix + number)) {
+      record.report =
+          FormerReportText(ReadFormerReport(fs::path(reporter.output_path) / kCompletenessFile));
+    }
+    record.cloud = cloud;
+    FinishStage(stage, record, {}, state);
+  }
+  return ParseFormerReport(record.report, (state->StateFolder() / stage.name).string());
+}
+
+std::string AnswerOf(CompletenessReporterOptions reporter, const Stage& stage,
+                     const std::string& number, const std::string& cloud, WorkspaceState* state,
+                     RunReport* report) {
   try {
+    reporter.former = FormerReportOf(reporter, number, cloud, state);
     Assessment done = RunStage<Assessment>(state, stage, [&]() -> StageOutput<Assessment> {
       CompletenessReport made = ReportCompleteness(reporter);
       return {{made.answer, made.run}, FilesOfOurs(reporter.output_path)};
@@ -96,7 +131,10 @@ void ReportCompletenessOfModels(const AutomaticReconstructorOptions& options,
                                 WorkspaceState* state, std::vector<ModelSummary>* models,
                                 RunReport* report) {
   const fs::path folder = workspace.report / "completeness";
-  RemoveStaleStages(kPrefix, options.report_completeness ? models->size() : 0, folder, state);
+  const size_t num_reports = options.report_completeness ? models->size() : 0;
+  for (const char* prefix : {kPrefix, kFormerPrefix}) {
+    RemoveStaleStages(prefix, num_reports, folder, state);
+  }
   if (!options.report_completeness) return;
   // Of the page's map: what it is made of beyond what is named anyway.
   const std::string map = kOrthomosaicVersion + OptionsFingerprint(OptionValues(options.map));
@@ -108,7 +146,9 @@ void ReportCompletenessOfModels(const AutomaticReconstructorOptions& options,
         kPrefix + model.name, kCompletenessVersion,
         InputsOf(reporter, model, mapper_fingerprint, model.map_path.empty() ? "" : map, *report),
         "The report in " + reporter.output_path + " is there already"};
-    model.completeness = AnswerOf(reporter, stage, model.name, state, report);
+    const std::string cloud = HashText(mapper_fingerprint + model.name + "," +
+                                       model.scaling_fingerprint + "," + model.cloud_hash);
+    model.completeness = AnswerOf(reporter, stage, model.name, cloud, state, report);
   }
 }
 

@@ -4,12 +4,12 @@
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
-#include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/content_hash.h"
 #include "colmap_seapoint/io/files/run_report_json.h"
 #include "colmap_seapoint/io/image/picture_masks.h"
 #include "colmap_seapoint/pipeline/densify.h"
+#include "colmap_seapoint/workspace/posed_pictures.h"
 #include "densify/densify_sequence.h"
 #include "densify/sequence_scope.h"
 
@@ -30,23 +30,6 @@ PartialDensifierOptions DensifierOptions(const AutomaticReconstructorOptions& op
   densifier.matching = options.matching;
   densifier.run = options.run;
   return densifier;
-}
-
-// The pictures of a model as they were densified: a line each, of name, pose and camera.
-std::vector<std::string> LinesOf(const ModelSummary& summary) {
-  const SparseModel model = ReadSparseModel(summary.path, ModelContent::kPosesAndPoints);
-  std::vector<std::string> lines;
-  for (const PosedImage& image : model.images) {
-    const Camera& camera = model.cameras.at(image.camera_id);
-    ContentHash hash;
-    const int numbers[] = {static_cast<int>(camera.model), camera.width, camera.height};
-    hash.Add(numbers, sizeof(numbers));
-    hash.Add(camera.params.data(), camera.params.size() * sizeof(double));
-    hash.Add(image.cam_from_world.rotation.coeffs().data(), 4 * sizeof(double));
-    hash.Add(image.cam_from_world.translation.data(), 3 * sizeof(double));
-    lines.push_back(image.name + " " + hash.Text());
-  }
-  return lines;
 }
 
 // A cloud and what it was made of, to be added to when pictures come in. Beside the stage's own
@@ -74,8 +57,7 @@ EarlierCloud CloudToContinue(const PartialDensifierOptions& options, const Stage
                              const std::vector<std::string>& pictures, WorkspaceState* state) {
   if (!options.rig.empty() || !CanBeDensifiedInParts(options.densification)) return {};
   const auto known = ResultIfDone<ContinuedCloud>(*state, stage);
-  if (!known || known->pictures.size() >= pictures.size()) return {};
-  if (!std::equal(known->pictures.begin(), known->pictures.end(), pictures.begin())) return {};
+  if (!known || !BeginWith(pictures, known->pictures)) return {};
   const size_t num_new = pictures.size() - known->pictures.size();
   LogInfo("The cloud of " + std::to_string(known->pictures.size()) + " pictures stays as it is; " +
           std::to_string(num_new) + " add theirs");
@@ -88,7 +70,8 @@ RunReport DensifyOnce(const PartialDensifierOptions& densifier, const Stage& sta
                       const ModelSummary& model, ColmapDatabase* database, WorkspaceState* state) {
   RunReport result = RunStage<RunReport>(state, stage, [&]() -> StageOutput<RunReport> {
     const Stage cloud = CloudStage(densifier, model.name);
-    const std::vector<std::string> pictures = LinesOf(model);
+    const std::vector<std::string> pictures =
+        PosedPictureLines(model.path, PictureMasks(densifier.mask_path));
     const EarlierCloud earlier = CloudToContinue(densifier, cloud, pictures, state);
     RunReport report = DensifyModel(densifier, database, earlier);
     const auto files = FilesOfOurs(densifier.output_path);

@@ -8,8 +8,11 @@
 #include "colmap_seapoint/io/outputs/output_folder.h"
 #include "colmap_seapoint/orthomosaic/ground/no_map.h"
 #include "colmap_seapoint/orthomosaic/orthomosaic.h"
+#include "colmap_seapoint/pipeline/orthomosaic/former_map.h"
 #include "colmap_seapoint/pipeline/orthomosaic/map_maker.h"
 #include "colmap_seapoint/workspace/earlier_outputs.h"
+#include "colmap_seapoint/workspace/posed_pictures.h"
+#include "densify/densify_sequence.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -44,13 +47,38 @@ OrthomosaicMakerOptions MakerOptions(const AutomaticReconstructorOptions& option
   return maker;
 }
 
+MapOrigin OriginOf(const AutomaticReconstructorOptions& options,
+                   const OrthomosaicMakerOptions& maker, const ModelSummary& model) {
+  MapOrigin origin;
+  origin.name = model.name;
+  origin.options = kDensificationVersion + OptionsFingerprint(OptionValues(options.densification)) +
+                   OptionsFingerprint(OptionValues(options.map)) + model.units_word;
+  origin.pictures = PosedPictureLines(model.path, PictureMasks(maker.mask_path));
+  origin.cloud = model.cloud_path;
+  origin.cloud_hash = model.cloud_hash;
+  origin.folder = maker.output_path;
+  return origin;
+}
+
+// Colours without the water are found from all pictures at once.
+bool CanBeContinued(const MapSettings& map) { return map.color != "balanced"; }
+
 // A picture that it left out could be read before: the next run tries again.
-MapOutcome MakeMapOnce(const OrthomosaicMakerOptions& maker, const Stage& stage,
-                       WorkspaceState* state) {
+MapOutcome MakeMapOnce(const AutomaticReconstructorOptions& options, OrthomosaicMakerOptions maker,
+                       const ModelSummary& model, const Stage& stage, WorkspaceState* state) {
   MapOutcome outcome = RunStage<MapOutcome>(state, stage, [&]() -> StageOutput<MapOutcome> {
+    const MapOrigin origin = OriginOf(options, maker, model);
+    if (CanBeContinued(options.map)) {
+      maker.former = KeepFormerMap(origin, state);
+      maker.memory_path = MemoryPathOf(origin, *state);
+    }
     RemoveOutputs(maker.output_path);
     try {
-      return {{MakeMap(maker), ""}, FilesOfOurs(maker.output_path)};
+      MadeMap made = MakeMap(maker);
+      const bool is_whole = made.report.left_out.empty();
+      if (CanBeContinued(options.map) && is_whole) RememberMap(origin, state);
+      ForgetFormerMap(model.name, !is_whole, state);
+      return {{std::move(made), ""}, FilesOfOurs(maker.output_path)};
     } catch (const NoMap& none) {
       RemoveOutputs(maker.output_path);
       return {{MadeMap(), none.what()}, {}};
@@ -87,7 +115,7 @@ void MakeMaps(const AutomaticReconstructorOptions& options, const Workspace& wor
                              PictureMasks(maker.mask_path).Fingerprint(model.pictures) +
                              OptionsFingerprint(OptionValues(options.map)),
                          "The map in " + maker.output_path + " is there already"};
-    MapOutcome outcome = MakeMapOnce(maker, stage, state);
+    MapOutcome outcome = MakeMapOnce(options, maker, model, stage, state);
     if (!outcome.refused.empty()) {
       LeaveOut("map of sparse/" + model.name, outcome.refused, report);
       continue;

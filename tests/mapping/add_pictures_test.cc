@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/mapping/continued_part.h"
 #include "tests/io/test_files.h"
 #include "tests/mapping/exact_survey.h"
 #include "tests/mapping/survey_database.h"
@@ -44,7 +45,8 @@ class AddPicturesTest : public testing::Test {
     WriteSparseModelBinary(dir_ / "grown", grown);
     AdjustmentJob job;
     job.image_path = dir_ / "images";
-    return AdjustAddedPictures(job, dir_ / "before", dir_ / "grown");
+    const SparseModel before = Before();
+    return AdjustAddedPictures(job, dir_ / "before", PartOf(before, IdsOf(before)), dir_ / "grown");
   }
 
   TempDir dir_;

@@ -130,22 +130,54 @@ TEST_F(RunMapperTest, AModelIsContinuedAndWhatItTakesIsTaken) {
   colmap_.SetHelp(MapperHelp(
       "3.8", {"Mapper.num_threads", "Mapper.fix_existing_images", kRefineFocal, kRefine}));
   WriteSparseModelBinary(dir_ / "before", Part(1, 6));
+  WriteSurveyDatabase(survey_, dir_ / "survey.db");
+  job_.database_path = dir_ / "survey.db";
   job_.continued_model = dir_ / "before";
   job_.lens = LensRule::kFind;
   colmap_.Leaves(kMapper, 1, "", Part(1, 9));  // the tenth is left over
   Run();
-  EXPECT_EQ(colmap_.Value(kMapper, 1, "input_path"), (dir_ / "before").string());
+  EXPECT_EQ(colmap_.Value(kMapper, 1, "input_path"), (job_.output_path / "trial_part").string());
   EXPECT_EQ(colmap_.Value(kMapper, 1, "Mapper.fix_existing_images"), "1");
   EXPECT_EQ(colmap_.Value(kMapper, 1, kRefineFocal), "0");
   EXPECT_EQ(colmap_.NumCalls(kMapper), 1);  // one alone makes no further round
   EXPECT_EQ(NumModels(), 1u);
   EXPECT_EQ(NamesIn("0").size(), 9u);
+  for (const auto& entry : fs::directory_iterator(job_.output_path / "0")) {
+    EXPECT_TRUE(IsModelFile(entry.path().filename().string())) << entry.path();
+  }
   // A mapper that fails at it is asked for all anew.
   colmap_.Ends(kMapper, 2, "cannot", 1);
   colmap_.Leaves(kMapper, 3, "0", survey_);
   Run();
   EXPECT_EQ(colmap_.Value(kMapper, 3, "input_path"), "");
   EXPECT_EQ(NamesIn("0").size(), 10u);
+}
+
+TEST_F(RunMapperTest, AModelThatNothingIsTiedToStaysAsItIs) {
+  colmap_.SetHelp(MapperHelp(
+      "3.8", {"Mapper.num_threads", "Mapper.fix_existing_images", kRefineFocal, kRefine}));
+  WriteSparseModelBinary(dir_ / "before", Part(1, 6));
+  SparseModel apart = survey_;
+  for (auto& [id, point] : apart.points3D) {
+    std::vector<SparsePoint::TrackElement> track;
+    for (const auto& element : point.track) {
+      if ((element.image_id <= 6) == (point.track[0].image_id <= 6)) track.push_back(element);
+    }
+    point.track = track;
+  }
+  WriteSurveyDatabase(apart, dir_ / "apart.db");
+  job_.database_path = dir_ / "apart.db";
+  job_.continued_model = dir_ / "before";
+  job_.lens = LensRule::kLeaveToMapper;
+  colmap_.Leaves(kMapper, 1, "0", Part(7, 10));
+  Run();
+  EXPECT_EQ(colmap_.Value(kMapper, 1, "input_path"), "");
+  EXPECT_EQ(colmap_.ImageList(kMapper, 1), "img10.jpg\nimg7.jpg\nimg8.jpg\nimg9.jpg\n");
+  EXPECT_EQ(NumModels(), 2u);
+  for (const std::string& file : {"images.bin", "points3D.bin"}) {
+    EXPECT_TRUE(ReadBytes(job_.output_path / "0" / file) == ReadBytes(dir_ / "before" / file));
+  }
+  EXPECT_EQ(NamesIn("1").size(), 4u);
 }
 
 TEST_F(RunMapperTest, LaterRoundsLookForTheMissingAndNumberTheirModelsOn) {

@@ -3,12 +3,14 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <string>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/io/cloud/ply_header.h"
+#include "colmap_seapoint/io/files/content_hash.h"
 #include "colmap_seapoint/io/files/input_stream.h"
 #include "colmap_seapoint/system/system_error.h"
 
@@ -38,7 +40,7 @@ CloudRanges::CloudRanges(const std::filesystem::path& path) : path_(path) {
 
 CloudRanges::~CloudRanges() { close(descriptor_); }
 
-std::vector<CloudPoint> CloudRanges::Read(uint64_t first, uint64_t count) const {
+std::vector<char> CloudRanges::ReadBytes(uint64_t first, uint64_t count) const {
   SEAPOINT_CHECK(count <= num_points_ && first <= num_points_ - count);
   std::vector<char> bytes(count * kPointBytes);
   size_t done = 0;
@@ -50,6 +52,21 @@ std::vector<CloudPoint> CloudRanges::Read(uint64_t first, uint64_t count) const 
     if (got == 0) throw Error(path_.string(), "has become shorter", "let it be written again");
     done += static_cast<size_t>(got);
   }
+  return bytes;
+}
+
+std::string CloudRanges::HashOfFirst(uint64_t count) const {
+  constexpr uint64_t kAtOnce = 1 << 15;
+  ContentHash hash;
+  for (uint64_t first = 0; first < count; first += kAtOnce) {
+    const std::vector<char> bytes = ReadBytes(first, std::min(kAtOnce, count - first));
+    hash.Add(bytes.data(), bytes.size());
+  }
+  return hash.Text();
+}
+
+std::vector<CloudPoint> CloudRanges::Read(uint64_t first, uint64_t count) const {
+  const std::vector<char> bytes = ReadBytes(first, count);
   std::vector<CloudPoint> points(count);
   for (size_t i = 0; i < count; ++i) {
     const char* record = bytes.data() + i * kPointBytes;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "colmap_seapoint/io/cloud/ply.h"
@@ -20,8 +21,12 @@ class CloudRanges {
   uint64_t NumPoints() const { return num_points_; }
   // Points first .. first + count - 1, which must exist. From any thread. Throws Error.
   std::vector<CloudPoint> Read(uint64_t first, uint64_t count) const;
+  // Of the bytes of the first points, of which there must be so many (content_hash.h).
+  std::string HashOfFirst(uint64_t count) const;
 
  private:
+  std::vector<char> ReadBytes(uint64_t first, uint64_t count) const;
+
   std::filesystem::path path_;
   int descriptor_ = -1;
   uint64_t num_points_ = 0;

@@ -44,6 +44,19 @@ VertexLayout FindVertexLayout(const std::string& path, const PlyElement& vertex)
   return layout;
 }
 
+// Whether the vertices are as CloudWriter writes them.
+bool IsOurOwn(const PlyHeader& header, const PlyElement& vertex) {
+  constexpr const char* kNames[] = {"x",  "y",   "z",     "nx",   "ny",
+                                    "nz", "red", "green", "blue", "confidence"};
+  if (header.is_ascii || header.is_big_endian || vertex.properties.size() != 10) return false;
+  for (size_t i = 0; i < 10; ++i) {
+    const PlyProperty& property = vertex.properties[i];
+    const PlyType type = i >= 6 && i < 9 ? PlyType::kUInt8 : PlyType::kFloat32;
+    if (property.is_list || property.name != kNames[i] || property.type != type) return false;
+  }
+  return true;
+}
+
 uint8_t ColorByte(double value, PlyType type) {
   if (type == PlyType::kFloat32 || type == PlyType::kFloat64) value *= 255.0;
   if (type == PlyType::kUInt16) value /= 257.0;
@@ -128,6 +141,20 @@ class RowReader {
     }
   }
 
+  // A row that IsOurOwn().
+  void ReadOwnRow(CloudVertex* vertex) {
+    constexpr size_t kBytes = 7 * sizeof(float) + 3;
+    if (end_ - begin_ < kBytes) Refill(kBytes);
+    const char* bytes = buffer_.data() + begin_;
+    Eigen::Vector3f xyz;
+    std::memcpy(xyz.data(), bytes, 3 * sizeof(float));
+    std::memcpy(vertex->normal.data(), bytes + 3 * sizeof(float), 3 * sizeof(float));
+    std::memcpy(vertex->rgb.data(), bytes + 6 * sizeof(float), 3);
+    std::memcpy(&vertex->confidence, bytes + 6 * sizeof(float) + 3, sizeof(float));
+    vertex->xyz = xyz.cast<double>();
+    begin_ += kBytes;
+  }
+
   void ReadRow(const PlyElement& element, std::vector<double>* values) {
     values->resize(element.properties.size());
     for (size_t i = 0; i < element.properties.size(); ++i) {
@@ -202,6 +229,7 @@ struct CloudReader::State {
       if (element.name == "vertex") {
         vertex = &element;
         layout = FindVertexLayout(path, element);
+        is_own = IsOurOwn(header, element);
         return;
       }
       if (element.properties.empty()) continue;
@@ -216,6 +244,7 @@ struct CloudReader::State {
   std::unique_ptr<RowReader> rows;
   const PlyElement* vertex = nullptr;
   VertexLayout layout;
+  bool is_own = false;
   std::vector<double> values;
   uint64_t num_read = 0;
 };
@@ -253,8 +282,12 @@ bool CloudReader::FitsFloat() const {
 bool CloudReader::Next(CloudVertex* vertex) {
   State& state = *state_;
   if (state.num_read == state.vertex->count) return false;
-  state.rows->ReadRow(*state.vertex, &state.values);
-  SetVertex(*state.vertex, state.layout, state.values, vertex);
+  if (state.is_own) {
+    state.rows->ReadOwnRow(vertex);
+  } else {
+    state.rows->ReadRow(*state.vertex, &state.values);
+    SetVertex(*state.vertex, state.layout, state.values, vertex);
+  }
   if (!vertex->xyz.allFinite()) {
     throw Error(state.path, "vertex " + std::to_string(state.num_read) + " is not finite",
                 "remove such points, e.g. in CloudCompare or MeshLab");

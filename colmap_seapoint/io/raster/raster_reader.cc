@@ -38,6 +38,21 @@ GDALRasterBandH BandOf(GDALDatasetH dataset, int max_side) {
 }  // namespace
 
 struct RasterReader::Impl {
+  template <typename T>
+  void ReadWindow(int x, int y, GDALDataType type, Image<T>* window) const {
+    const int left = std::max(x, 0), top = std::max(y, 0);
+    const int width = std::min(x + window->width, layout.width) - left;
+    const int height = std::min(y + window->height, layout.height) - top;
+    if (width <= 0 || height <= 0) return;
+    SEAPOINT_CHECK(GDALGetRasterCount(dataset.get()) == window->channels);
+    T* first = window->Row(top - y) + (left - x) * window->channels;
+    const int pixel = window->channels * static_cast<int>(sizeof(T));
+    const GdalSession session(path);
+    session.Check(GDALDatasetRasterIO(dataset.get(), GF_Read, left, top, width, height, first,
+                                      width, height, type, window->channels, nullptr, pixel,
+                                      pixel * window->width, sizeof(T)) == CE_None);
+  }
+
   std::filesystem::path path;
   GdalDataset dataset;
   GDALRasterBandH band = nullptr;
@@ -89,6 +104,19 @@ FloatImage RasterReader::ReadHeights(int first, int count) const {
                  std::numeric_limits<float>::quiet_NaN());
   }
   return rows;
+}
+
+void RasterReader::ReadWindow(int x, int y, Image<float>* window) const {
+  impl_->ReadWindow(x, y, GDT_Float32, window);
+}
+void RasterReader::ReadWindow(int x, int y, Image<uint8_t>* window) const {
+  impl_->ReadWindow(x, y, GDT_Byte, window);
+}
+void RasterReader::ReadWindow(int x, int y, Image<uint16_t>* window) const {
+  impl_->ReadWindow(x, y, GDT_UInt16, window);
+}
+void RasterReader::ReadWindow(int x, int y, Image<uint32_t>* window) const {
+  impl_->ReadWindow(x, y, GDT_UInt32, window);
 }
 
 Image<uint8_t> RasterReader::ReadColors(int width, int height) const {

@@ -26,6 +26,13 @@ class RasterReader {
 
   // Rows first .. first + count - 1 of the first band; NaN where a pixel is none. Throws Error.
   FloatImage ReadHeights(int first, int count) const;
+  // Pixels (x, y) ... of all bands, as they are in the file; what of them lies outside of the
+  // raster stays as it is in `window`, which is of the type and channels of the bands. Throws
+  // Error.
+  void ReadWindow(int x, int y, Image<float>* window) const;
+  void ReadWindow(int x, int y, Image<uint8_t>* window) const;
+  void ReadWindow(int x, int y, Image<uint16_t>* window) const;
+  void ReadWindow(int x, int y, Image<uint32_t>* window) const;
   // All bands of an RGBA raster, averaged to this size. Throws Error.
   Image<uint8_t> ReadColors(int width, int height) const;
 

@@ -4,12 +4,13 @@
 #include <cstdint>
 #include <limits>
 
+#include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/image.h"
+#include "colmap_seapoint/orthomosaic/ground/map_grid.h"
 
 namespace colmap_seapoint {
 
 struct MapFrame;
-struct MapGrid;
 
 // What a pixel of the relief stands on; 0 where nothing was reconstructed.
 enum SurfaceFlag : uint8_t {
@@ -41,6 +42,13 @@ class MapTileSink {
   virtual void Begin(const MapFrame& frame, const MapGrid& grid) = 0;
   // Each at most once, in an order that depends on the grid alone.
   virtual void Take(MapTile&& tile) = 0;
+  // A tile of this box that is as in the map before, where its first pixel was (x, y), which may
+  // lie outside of it: returns its source and surface as they are there. Of a map that is
+  // continued.
+  virtual MapTile TakeOver(const MapGrid::Box&, int, int) {
+    SEAPOINT_CHECK(false);  // a sink that knows of no map before
+    return {};
+  }
 };
 
 }  // namespace colmap_seapoint

@@ -104,10 +104,26 @@ std::vector<Eigen::Vector3d> SampleCloud(const std::filesystem::path& path) {
   return sample;
 }
 
+uint64_t NumPointsOf(const std::filesystem::path& path) { return CloudReader(path).NumPoints(); }
+
+void ReadPointsFrom(const std::filesystem::path& path, uint64_t first,
+                    const std::function<void(const Eigen::Vector3d&)>& take) {
+  const CloudRanges cloud(path);
+  while (first < cloud.NumPoints()) {
+    const uint64_t count = std::min(kReadPoints, cloud.NumPoints() - first);
+    for (const CloudPoint& point : cloud.Read(first, count)) {
+      if (point.xyz.allFinite()) take(point.xyz.cast<double>());
+    }
+    first += count;
+  }
+}
+
 CloudTiles::CloudTiles(const std::filesystem::path& path, const Rigid3d& map_from_cloud,
-                       const MapGrid& grid, double base_height, const std::filesystem::path& folder)
+                       const MapGrid& grid, double base_height, const std::filesystem::path& folder,
+                       std::vector<uint8_t> is_wanted)
     : grid_(grid),
       base_height_(base_height),
+      is_wanted_(std::move(is_wanted)),
       store_(folder, grid.NumTiles(), sizeof(TilePoint)),
       num_blocks_x_((grid.width + kBlock - 1) / kBlock),
       num_blocks_y_((grid.height + kBlock - 1) / kBlock) {
@@ -143,7 +159,8 @@ void CloudTiles::AddToTiles(const Eigen::Vector2d& pixel, float height, float we
     for (int tx = std::max(column - kTileHalo, 0) / size; tx <= last_x; ++tx) {
       const TilePoint point = {static_cast<float>(pixel.x() - tx * size),
                                static_cast<float>(pixel.y() - ty * size), height, weight};
-      store_.Append(ty * grid_.NumTilesX() + tx, &point);
+      const int tile = ty * grid_.NumTilesX() + tx;
+      if (IsWanted(tile)) store_.Append(tile, &point);
     }
   }
 }
@@ -171,6 +188,7 @@ void CloudTiles::FindCellSizes() {
   std::map<int, uint64_t> num_points;  // that do with cells of such a size
   cell_sizes_.assign(static_cast<size_t>(grid_.NumTiles()), 0);
   for (int i = 0; i < grid_.NumTiles(); ++i) {
+    if (!IsWanted(i)) continue;
     std::vector<uint32_t> counts = InnerCounts(grid_.Tile(i));
     if (counts.size() < kMinInnerBlocks) continue;
     cell_sizes_[static_cast<size_t>(i)] = CellSizeFor(std::move(counts));

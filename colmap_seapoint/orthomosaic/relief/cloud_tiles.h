@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <vector>
 
 #include "colmap_seapoint/base/rigid3.h"
@@ -15,6 +16,12 @@ namespace colmap_seapoint {
 // Some 100,000 points, evenly over the file: enough to find plane and extent. Throws as CloudReader
 // does, and Error for a cloud without points.
 std::vector<Eigen::Vector3d> SampleCloud(const std::filesystem::path& path);
+
+uint64_t NumPointsOf(const std::filesystem::path& path);
+
+// Calls take(place) for every point of a cloud of ours from the `first` on.
+void ReadPointsFrom(const std::filesystem::path& path, uint64_t first,
+                    const std::function<void(const Eigen::Vector3d&)>& take);
 
 struct TilePoint {
   float column = 0, row = 0;  // pixels from the tile's first corner
@@ -29,8 +36,10 @@ class CloudTiles {
  public:
   // Reads the cloud once. Points lie in a temporary file in `folder` (16 bytes each, some 1.3 of
   // each because of the halos); memory: 16 kB a tile and a number for every 16 x 16 pixels.
+  // `is_wanted`, by tile: the others stay empty; empty: all are.
   CloudTiles(const std::filesystem::path& path, const Rigid3d& map_from_cloud, const MapGrid& grid,
-             double base_height, const std::filesystem::path& folder);
+             double base_height, const std::filesystem::path& folder,
+             std::vector<uint8_t> is_wanted = {});
 
   // In the order of the file. From any thread.
   std::vector<TilePoint> Read(int tile_idx) const { return store_.Read<TilePoint>(tile_idx); }
@@ -44,12 +53,16 @@ class CloudTiles {
 
  private:
   void Add(const Eigen::Vector3d& in_map, float confidence);
+  bool IsWanted(int tile_idx) const {
+    return is_wanted_.empty() || is_wanted_[static_cast<size_t>(tile_idx)];
+  }
   void AddToTiles(const Eigen::Vector2d& pixel, float height, float weight);
   void FindCellSizes();
   std::vector<uint32_t> InnerCounts(const MapGrid::Box& box) const;
 
   MapGrid grid_;
   double base_height_;
+  std::vector<uint8_t> is_wanted_;
   TileStore store_;
   std::vector<uint32_t> block_counts_;
   int num_blocks_x_ = 0, num_blocks_y_ = 0;

@@ -38,7 +38,7 @@ double Relief::CellSide(int tile_idx) const {
 }
 
 Relief::Relief(const CloudTiles& cloud, const MapGrid& grid, bool fill, int num_threads,
-               const std::filesystem::path& folder)
+               const std::filesystem::path& folder, const KnownRelief* known)
     : grid_(grid), store_(folder, grid.NumTiles(), 1) {
   blocks_.width = (grid.width + kBlockSize - 1) / kBlockSize;
   blocks_.height = (grid.height + kBlockSize - 1) / kBlockSize;
@@ -46,11 +46,13 @@ Relief::Relief(const CloudTiles& cloud, const MapGrid& grid, bool fill, int num_
                       kNoHeight);
   blocks_.lowest = std::numeric_limits<float>::infinity();
   blocks_.highest = -blocks_.lowest;
+  if (known != nullptr) TakeOver(*known);
   for (int i = 0; i < grid.NumTiles(); ++i) cell_sizes_.push_back(cloud.CellSize(i));
   OrderedPipeline<ReliefTile>(
       num_threads, grid.NumTiles(), TilesAtOnce(num_threads),
       [&](int64_t i) {
         const int tile = static_cast<int>(i);
+        if (known != nullptr && !known->is_wanted[static_cast<size_t>(i)]) return ReliefTile();
         const ReliefOptions options = {cloud.CellSize(tile), grid.pixel_size, cloud.BaseHeight(),
                                        fill};
         return MakeReliefTile(options, cloud.Read(tile), grid.Tile(tile));
@@ -61,6 +63,22 @@ Relief::Relief(const CloudTiles& cloud, const MapGrid& grid, bool fill, int num_
   if (!(blocks_.lowest <= blocks_.highest)) {
     throw NoMap("the map", "the points of the cloud lie too far apart to make a surface",
                 "give a dense cloud, or a larger pixel size");
+  }
+}
+
+// What is known of tiles that are made is found again.
+void Relief::TakeOver(const KnownRelief& known) {
+  blocks_.lowest = known.lowest;
+  blocks_.highest = known.highest;
+  blocks_.mean = known.mean;
+  for (int i = 0; i < grid_.NumTiles(); ++i) {
+    if (!known.is_wanted[static_cast<size_t>(i)]) continue;
+    const MapGrid::Box box = grid_.Tile(i);
+    for (int y = box.y / kBlockSize; y * kBlockSize < box.y + box.height; ++y) {
+      for (int x = box.x / kBlockSize; x * kBlockSize < box.x + box.width; ++x) {
+        blocks_.mean[blocks_.At(x, y)] = kNoHeight;
+      }
+    }
   }
 }
 

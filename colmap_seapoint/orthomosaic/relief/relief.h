@@ -40,12 +40,20 @@ struct BlockRelief {
   bool Contains(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
 };
 
+// Of a map that is continued: which tiles are made, and what is known of the others.
+struct KnownRelief {
+  std::vector<uint8_t> is_wanted;  // by tile
+  std::vector<float> mean;         // by block, as BlockRelief
+  float lowest = 0, highest = 0;
+};
+
 class Relief {
  public:
-  // Makes all tiles, on `num_threads`; they lie in a temporary file in `folder`. Throws Error when
-  // that cannot be written, NoMap when no cell of the map has a surface.
+  // Makes all tiles, or all that are wanted, on `num_threads`; they lie in a temporary file in
+  // `folder`. Throws Error when that cannot be written, NoMap when no cell of the map has a
+  // surface.
   Relief(const CloudTiles& cloud, const MapGrid& grid, bool fill, int num_threads,
-         const std::filesystem::path& folder);
+         const std::filesystem::path& folder, const KnownRelief* known = nullptr);
 
   // Empty() where there is no surface. From any thread.
   ReliefTile Read(int tile_idx) const;
@@ -57,6 +65,7 @@ class Relief {
 
  private:
   void Keep(int tile_idx, const ReliefTile& tile);
+  void TakeOver(const KnownRelief& known);
   void AddBlocks(const MapGrid::Box& box, const ReliefTile& tile);
 
   MapGrid grid_;

@@ -88,7 +88,8 @@ void LookAtPicture(const Relief& relief, const MapView& view, uint32_t picture_i
   for (int y = blocks[1]; y <= blocks[3]; ++y) {
     for (int x = blocks[0]; x <= blocks[2]; ++x) {
       const int32_t at = sources->slot[relief.Blocks().At(x, y)];
-      const Source* source = at < 0 ? nullptr : sources->Find(at, picture_idx);
+      if (at < 0 || sources->IsKept(at)) continue;
+      const Source* source = sources->Find(at, picture_idx);
       if (source) viewer.Look(x, y, &sources->Of(at)[source - sources->Of(at)]);
     }
   }
@@ -113,6 +114,19 @@ void SortSources(Source* sources) {
   });
 }
 
+// All, or those that may colour a block that is not kept.
+std::vector<uint8_t> PicturesToLookAt(const SourceBlocks& sources, size_t num_pictures) {
+  std::vector<uint8_t> is_wanted(num_pictures, sources.is_kept.empty() ? 1 : 0);
+  for (size_t slot = 0; slot < sources.is_kept.size(); ++slot) {
+    if (sources.is_kept[slot]) continue;
+    const Source* of_block = sources.Of(static_cast<int32_t>(slot));
+    for (int k = 0; k < kMaxSources && of_block[k].picture != kNoPicture; ++k) {
+      is_wanted[of_block[k].picture] = 1;
+    }
+  }
+  return is_wanted;
+}
+
 bool IsUsable(const Camera& camera, const Picture& picture, int reduction) {
   if (picture.Empty()) return false;
   const int width = std::max(1, camera.width >> reduction);
@@ -126,10 +140,13 @@ std::vector<size_t> LookAtSources(const Relief& relief, const std::vector<MapVie
                                   int num_threads, const std::function<void(int64_t)>& progress,
                                   MapPictures* pictures, SourceBlocks* sources) {
   std::vector<uint8_t> is_unusable(views.size(), 0);
-  const std::vector<std::array<int, 4>> blocks = FootprintBlocks(relief, views);
+  const std::vector<std::array<int, 4>> blocks =
+      FootprintBlocks(relief.Blocks(), relief.Grid(), views);
+  const std::vector<uint8_t> is_wanted = PicturesToLookAt(*sources, views.size());
   std::mutex mutex;
   int64_t num_done = 0;
   const auto look = [&](size_t i) {
+    if (!is_wanted[i]) return;
     if (blocks[i][0] > blocks[i][2] || blocks[i][1] > blocks[i][3]) return;
     const auto picture_idx = static_cast<uint32_t>(i);
     const std::shared_ptr<const Picture> picture = pictures->Get(picture_idx);
@@ -142,8 +159,10 @@ std::vector<size_t> LookAtSources(const Relief& relief, const std::vector<MapVie
     const std::lock_guard<std::mutex> lock(mutex);
     progress(++num_done);
   });
-  ParallelFor(num_threads, static_cast<int64_t>(sources->NumSlots()),
-              [&](int64_t slot) { SortSources(sources->Of(static_cast<int32_t>(slot))); });
+  ParallelFor(num_threads, static_cast<int64_t>(sources->NumSlots()), [&](int64_t i) {
+    const auto slot = static_cast<int32_t>(i);
+    if (!sources->IsKept(slot)) SortSources(sources->Of(slot));
+  });
   std::vector<size_t> unusable;
   for (size_t i = 0; i < views.size(); ++i) {
     if (is_unusable[i]) unusable.push_back(i);

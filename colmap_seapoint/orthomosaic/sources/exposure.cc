@@ -21,6 +21,7 @@ constexpr int kMaxPairs = 3;     // a block
 constexpr uint8_t kDarkest = 3, kBrightest = 250;
 constexpr double kGainPrior = 0.05;  // of a gain that nothing tells, against one observation
 constexpr double kLevelPrior = 1;
+constexpr double kKnown = 1e8;      // of what is known, against one observation
 constexpr double kSmoothPrior = 4;  // of neighbouring nodes of the falloff
 constexpr double kMaxLogGain = 1.0986;
 
@@ -74,7 +75,8 @@ class RowCollector {
     for (int y = 0; y < relief_.Blocks().height; ++y) {
       for (int x = 0; x < relief_.Blocks().width; ++x) {
         const int32_t at = sources_.slot[relief_.Blocks().At(x, y)];
-        if (at >= 0 && SourceBlocks::Scattered(at) % stride == 0) AddBlock(x, y, at, &rows);
+        if (at < 0 || sources_.IsKept(at)) continue;
+        if (SourceBlocks::Scattered(at) % stride == 0) AddBlock(x, y, at, &rows);
       }
     }
     return rows;
@@ -125,12 +127,17 @@ class ExposureSystem {
         num_falloffs_(num_falloffs),
         size_(num_pictures_ + num_falloffs * Exposure::kNumNodes) {}
 
-  // One column a channel.
-  Eigen::MatrixX3d Solve(const std::vector<Row>& rows) const {
+  // One column a channel. `known`: a row for each of the first unknowns, whose values these are.
+  Eigen::MatrixX3d Solve(const std::vector<Row>& rows,
+                         const Eigen::MatrixX3d& known = Eigen::MatrixX3d(0, 3)) const {
     std::vector<Eigen::Triplet<double>> entries;
     Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(size_, 3);
     for (const Row& row : rows) AddRow(row, &entries, &right);
     AddPriors(&entries);
+    for (Eigen::Index i = 0; i < known.rows(); ++i) {
+      entries.emplace_back(i, i, kKnown);
+      right.row(i) += kKnown * known.row(i);
+    }
     Eigen::SparseMatrix<double> matrix(size_, size_);
     matrix.setFromTriplets(entries.begin(), entries.end());
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
@@ -260,6 +267,20 @@ std::vector<int> FindFalloffs(const std::vector<MapView>& views, int* num_fallof
   return falloff_of;
 }
 
+Eigen::RowVector3d LogOf(const Light& factor) {
+  return {std::log(double{factor[0]}), std::log(double{factor[1]}), std::log(double{factor[2]})};
+}
+
+// What the falloffs make of the two pictures, at a gain of one.
+void TakeOutKnown(const Exposure& falloffs, Row* row) {
+  for (const int k : {0, 1}) {
+    Light factor = falloffs.FactorAt(row->picture[k], static_cast<float>(row->place[k].x()),
+                                     static_cast<float>(row->place[k].y()));
+    for (size_t c = 0; c < 3; ++c) factor[c] /= falloffs.Gain(row->picture[k])[c];
+    row->difference += (k == 0 ? 1 : -1) * LogOf(factor).transpose();
+  }
+}
+
 }  // namespace
 
 Light Exposure::FactorAt(uint32_t picture, float x, float y) const {
@@ -313,6 +334,40 @@ Exposure BalanceExposure(const Relief& relief, const std::vector<MapView>& views
   }
   return Exposure(std::move(gains), falloff_of, std::move(falloffs),
                   FindTrend(system, solution, rows));
+}
+
+Exposure ContinueExposure(const Exposure& before, const Relief& relief,
+                          const std::vector<MapView>& views, const SourceBlocks& sources) {
+  const size_t num_before = before.Gains().size();
+  std::map<uint32_t, int> falloffs;  // by camera
+  for (size_t i = 0; i < num_before; ++i) {
+    falloffs.emplace(views[i].GetCamera().camera_id, before.FalloffOf()[i]);
+  }
+  std::vector<Light> gains = before.Gains();
+  std::vector<int> falloff_of = before.FalloffOf();
+  for (size_t i = num_before; i < views.size(); ++i) {
+    const auto found = falloffs.find(views[i].GetCamera().camera_id);
+    falloff_of.push_back(found == falloffs.end() ? -1 : found->second);
+  }
+  gains.resize(views.size(), Light{1, 1, 1});
+  const Exposure with_falloffs(gains, falloff_of, before.Falloffs());
+  std::vector<Row> rows = RowCollector(relief, views, sources).Collect();
+  for (Row& row : rows) TakeOutKnown(with_falloffs, &row);
+  const std::vector<int> no_falloffs(views.size(), -1);
+  const ExposureSystem system(views.size(), no_falloffs, 0);
+  Eigen::MatrixX3d known(static_cast<Eigen::Index>(num_before), 3);
+  for (size_t i = 0; i < num_before; ++i) {
+    known.row(static_cast<Eigen::Index>(i)) = LogOf(gains[i]);
+  }
+  if (!rows.empty()) {
+    Eigen::MatrixX3d solution = system.Solve(rows, known);
+    Reweigh(system, solution, &rows);
+    solution = system.Solve(rows, known);
+    for (size_t i = num_before; i < views.size(); ++i) {
+      gains[i] = FactorOf(solution.row(static_cast<Eigen::Index>(i)));
+    }
+  }
+  return Exposure(std::move(gains), std::move(falloff_of), before.Falloffs(), before.Trend());
 }
 
 Exposure EqualExposure(size_t num_pictures) {

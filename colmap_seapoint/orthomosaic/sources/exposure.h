@@ -33,6 +33,10 @@ class Exposure {
         falloffs_(std::move(falloffs)),
         trend_(trend) {}
 
+  const std::vector<Light>& Gains() const { return gains_; }
+  const std::vector<int>& FalloffOf() const { return falloff_of_; }
+  const std::vector<std::array<Light, kNumNodes>>& Falloffs() const { return falloffs_; }
+  const ExposureTrend& Trend() const { return trend_; }
   const Light& Gain(uint32_t picture) const { return gains_[picture]; }
   // At a place of the picture, 0 ... 1 from its left and upper side.
   Light FactorAt(uint32_t picture, float x, float y) const;
@@ -52,6 +56,11 @@ class Exposure {
 // where it cannot be told. Deterministic; a second for some thousand pictures.
 Exposure BalanceExposure(const Relief& relief, const std::vector<MapView>& views,
                          const SourceBlocks& sources);
+
+// Of a map that is continued: what it had stays; pictures that came in since get their gains from
+// what they show of the blocks that are not kept, and the falloff of their camera.
+Exposure ContinueExposure(const Exposure& before, const Relief& relief,
+                          const std::vector<MapView>& views, const SourceBlocks& sources);
 
 // No change at all.
 Exposure EqualExposure(size_t num_pictures);

@@ -31,6 +31,7 @@ class SeamChooser {
       : blocks_(blocks), exposure_(exposure), sources_(*sources) {}
 
   void ChooseAlong(const Line& line) {
+    if (!HasChoice(line)) return;
     std::vector<std::array<uint8_t, kMaxSources>> before(static_cast<size_t>(line.length));
     Costs costs = {};  // of the best way to each source of the last block
     int32_t last = -1;
@@ -53,9 +54,24 @@ class SeamChooser {
     return at < 0 || sources_.Of(at)[0].picture == kNoPicture ? -1 : at;
   }
 
+  // Of a line whose blocks are all kept there is none.
+  bool HasChoice(const Line& line) const {
+    if (sources_.is_kept.empty()) return true;
+    for (int i = 0; i < line.length; ++i) {
+      const int32_t at = SlotAt(line.x + i * line.dx, line.y + i * line.dy);
+      if (at >= 0 && !sources_.IsKept(at)) return true;
+    }
+    return false;
+  }
+
   // Of a block's sources, with the seams to the neighbours across the line.
   Costs OwnCosts(int x, int y, const Line& line, int32_t at) const {
     Costs costs = {};
+    if (sources_.IsKept(at)) {
+      costs.fill(kImpossible);
+      costs[sources_.choice[static_cast<size_t>(at)]] = 0;
+      return costs;
+    }
     for (size_t k = 0; k < kMaxSources; ++k) {
       const Source& source = sources_.Of(at)[k];
       costs[k] = source.picture == kNoPicture ? kImpossible : source.cost;
@@ -133,7 +149,9 @@ class SeamChooser {
 
 void ChooseSources(const BlockRelief& blocks, const Exposure& exposure, int num_threads,
                    SourceBlocks* sources) {
-  std::fill(sources->choice.begin(), sources->choice.end(), uint8_t{0});
+  for (size_t slot = 0; slot < sources->choice.size(); ++slot) {
+    if (!sources->IsKept(static_cast<int32_t>(slot))) sources->choice[slot] = 0;
+  }
   SeamChooser chooser(blocks, exposure, sources);
   for (int round = 0; round < kRounds; ++round) {
     for (const int first : {0, 1}) {

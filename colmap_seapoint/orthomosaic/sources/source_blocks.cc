@@ -40,7 +40,9 @@ void Offer(const Source& source, Source* sources) {
 class SourceFinder {
  public:
   SourceFinder(const Relief& relief, const std::vector<MapView>& views)
-      : relief_(relief), views_(views), footprints_(FootprintBlocks(relief, views)) {}
+      : relief_(relief),
+        views_(views),
+        footprints_(FootprintBlocks(relief.Blocks(), relief.Grid(), views)) {}
 
   void FindInRow(int y, SourceBlocks* result) const {
     for (size_t i = 0; i < views_.size(); ++i) {
@@ -48,7 +50,8 @@ class SourceFinder {
       if (y < blocks[1] || y > blocks[3]) continue;
       for (int x = blocks[0]; x <= blocks[2]; ++x) {
         const int32_t at = result->slot[relief_.Blocks().At(x, y)];
-        if (at >= 0) OfferPicture(static_cast<uint32_t>(i), x, y, result->Of(at));
+        if (at >= 0 && !result->IsKept(at))
+          OfferPicture(static_cast<uint32_t>(i), x, y, result->Of(at));
       }
     }
   }
@@ -80,6 +83,17 @@ class SourceFinder {
   std::vector<std::array<int, 4>> footprints_;
 };
 
+void TakeOver(const SourceBlocks& before, const std::vector<int32_t>& kept, SourceBlocks* result) {
+  result->is_kept.assign(result->NumSlots(), 0);
+  for (size_t i = 0; i < kept.size(); ++i) {
+    const int32_t at = result->slot[i];
+    if (at < 0 || kept[i] < 0) continue;
+    result->is_kept[static_cast<size_t>(at)] = 1;
+    std::copy_n(before.Of(kept[i]), kMaxSources, result->Of(at));
+    result->choice[static_cast<size_t>(at)] = before.choice[static_cast<size_t>(kept[i])];
+  }
+}
+
 }  // namespace
 
 Eigen::Vector3d PlaceInBlock(const Relief& relief, int x, int y, double dx, double dy) {
@@ -89,9 +103,8 @@ Eigen::Vector3d PlaceInBlock(const Relief& relief, int x, int y, double dx, doub
   return {place.x(), place.y(), double{relief.Blocks().mean[relief.Blocks().At(x, y)]}};
 }
 
-std::vector<std::array<int, 4>> FootprintBlocks(const Relief& relief,
+std::vector<std::array<int, 4>> FootprintBlocks(const BlockRelief& blocks, const MapGrid& grid,
                                                 const std::vector<MapView>& views) {
-  const BlockRelief& blocks = relief.Blocks();
   std::vector<std::array<int, 4>> result;
   result.reserve(views.size());
   for (const MapView& view : views) {
@@ -102,7 +115,6 @@ std::vector<std::array<int, 4>> FootprintBlocks(const Relief& relief,
       result.push_back({1, 1, 0, 0});
       continue;
     }
-    const MapGrid& grid = relief.Grid();
     const auto [low_x, low_y, high_x, high_y] = *footprint;
     const Eigen::Array2d first = grid.PixelOf(low_x, high_y).array() / kBlockSize - 1;
     const Eigen::Array2d last = grid.PixelOf(high_x, low_y).array() / kBlockSize + 1;
@@ -117,7 +129,8 @@ std::vector<std::array<int, 4>> FootprintBlocks(const Relief& relief,
   return result;
 }
 
-SourceBlocks FindSources(const Relief& relief, const std::vector<MapView>& views, int num_threads) {
+SourceBlocks FindSources(const Relief& relief, const std::vector<MapView>& views, int num_threads,
+                         const SourceBlocks* before, const std::vector<int32_t>& kept) {
   SourceBlocks result;
   result.slot.assign(relief.Blocks().mean.size(), -1);
   int32_t num_slots = 0;
@@ -126,6 +139,7 @@ SourceBlocks FindSources(const Relief& relief, const std::vector<MapView>& views
   }
   result.sources.resize(static_cast<size_t>(num_slots) * kMaxSources);
   result.choice.resize(static_cast<size_t>(num_slots), 0);
+  if (before != nullptr) TakeOver(*before, kept, &result);
   const SourceFinder finder(relief, views);
   ParallelFor(num_threads, relief.Blocks().height,
               [&](int64_t y) { finder.FindInRow(static_cast<int>(y), &result); });

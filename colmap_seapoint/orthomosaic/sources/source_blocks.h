@@ -28,6 +28,10 @@ struct SourceBlocks {
   std::vector<int32_t> slot;    // by block; -1 where there is no surface
   std::vector<Source> sources;  // kMaxSources a slot
   std::vector<uint8_t> choice;  // by slot: which of its sources colours it (seams.h)
+  // By slot: whether it is as in the map that is continued; empty: there is none.
+  std::vector<uint8_t> is_kept;
+
+  bool IsKept(int32_t at) const { return !is_kept.empty() && is_kept[static_cast<size_t>(at)]; }
 
   const Source* Of(int32_t at) const { return &sources[static_cast<size_t>(at) * kMaxSources]; }
   Source* Of(int32_t at) { return &sources[static_cast<size_t>(at) * kMaxSources]; }
@@ -54,14 +58,18 @@ struct SourceBlocks {
 // Cost: the ground sampling distance there, the angle from the map's normal, and the distance from
 // the middle of the picture, where lenses draw best and lamps reach. Pictures that see all of it
 // are looked for by their footprints: about 60 ns for each block and picture whose footprints meet.
-SourceBlocks FindSources(const Relief& relief, const std::vector<MapView>& views, int num_threads);
+// With a map that is continued, `kept` has for each block its slot there, -1 where sources are to
+// be found anew.
+SourceBlocks FindSources(const Relief& relief, const std::vector<MapView>& views, int num_threads,
+                         const SourceBlocks* before = nullptr,
+                         const std::vector<int32_t>& kept = {});
 
 // The place of a block's centre on the surface, in the map's frame; and the one `dx`, `dy` pixels
 // (columns, rows) beside it at the same height.
 Eigen::Vector3d PlaceInBlock(const Relief& relief, int x, int y, double dx = 0, double dy = 0);
 
 // The range of blocks that a picture may see, first and last: x, y, x, y; empty where first > last.
-std::vector<std::array<int, 4>> FootprintBlocks(const Relief& relief,
+std::vector<std::array<int, 4>> FootprintBlocks(const BlockRelief& blocks, const MapGrid& grid,
                                                 const std::vector<MapView>& views);
 
 }  // namespace colmap_seapoint

@@ -43,9 +43,17 @@ std::vector<std::string> MapNames() {
   return names;
 }
 
+std::vector<std::string> MapRasters() {
+  return {kMapColors, kMapHeights, kMapSources, kMapSurface};
+}
+
 MapFiles::MapFiles(OutputFolder* folder, const std::optional<ModelUnits>& units,
-                   size_t num_pictures, int num_threads)
-    : folder_(*folder), units_(units), num_pictures_(num_pictures), num_threads_(num_threads) {}
+                   size_t num_pictures, int num_threads, std::filesystem::path former)
+    : folder_(*folder),
+      units_(units),
+      num_pictures_(num_pictures),
+      num_threads_(num_threads),
+      former_(std::move(former)) {}
 
 void MapFiles::Open(const std::string& name, RasterLayout layout) {
   rasters_.push_back({name, std::move(layout), nullptr});
@@ -115,10 +123,41 @@ void MapFiles::Take(MapTile&& tile) {
       .WriteTile(column, row,
                  HeightsForFile(std::move(tile.relief), placement_.offset.z(), height_step_));
   Writer(kMapSurface).WriteTile(column, row, tile.surface);
+  TakeSources(column, row, tile.source);
+}
+
+template <typename T>
+Image<T> MapFiles::Former(const std::string& name, int x, int y, Image<T> tile) {
+  std::unique_ptr<RasterReader>& raster = former_rasters_[name];
+  if (raster == nullptr) raster = std::make_unique<RasterReader>(former_ / name);
+  raster->ReadWindow(x, y, &tile);
+  return tile;
+}
+
+MapTile MapFiles::TakeOver(const MapGrid::Box& box, int x, int y) {
+  const int column = box.x / tile_size_, row = box.y / tile_size_;
+  MapTile tile;
+  tile.x = box.x;
+  tile.y = box.y;
+  Writer(kMapColors)
+      .WriteTile(column, row, Former(kMapColors, x, y, Image<uint8_t>(box.width, box.height, 4)));
+  const FloatImage none(box.width, box.height, 1, static_cast<float>(kNoHeightInFile));
+  Writer(kMapHeights).WriteTile(column, row, Former(kMapHeights, x, y, none));
+  tile.surface = Former(kMapSurface, x, y, Image<uint8_t>(box.width, box.height));
+  Writer(kMapSurface).WriteTile(column, row, tile.surface);
+  const Image<uint32_t> labels = Former(kMapSources, x, y, Image<uint32_t>(box.width, box.height));
+  tile.source = Image<int32_t>(box.width, box.height);
+  std::transform(labels.data.begin(), labels.data.end(), tile.source.data.begin(),
+                 [](uint32_t label) { return static_cast<int32_t>(label) - 1; });
+  TakeSources(column, row, tile.source);
+  return tile;
+}
+
+void MapFiles::TakeSources(int column, int row, const Image<int32_t>& source) {
   if (num_pictures_ > std::numeric_limits<uint16_t>::max()) {
-    WriteSources<uint32_t>(column, row, tile.source);
+    WriteSources<uint32_t>(column, row, source);
   } else {
-    WriteSources<uint16_t>(column, row, tile.source);
+    WriteSources<uint16_t>(column, row, source);
   }
 }
 

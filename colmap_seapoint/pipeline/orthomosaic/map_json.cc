@@ -81,6 +81,7 @@ std::string MapJson(const OrthomosaicSummary& map, const MapPlacement& placement
   json["colored_area"] = Area(map.num_colored_pixels, grid);
   json["pictures"] = {{"in_model", model.images.size()},
                       {"used", map.pictures_used.size()},
+                      {"placed_and_balanced_by", map.memory.first_pictures},
                       {"unread", NamesOf(map.pictures_unread, model)}};
   json["color"] = map.water && map.water->IsDetermined() ? "balanced" : "raw";
   if (map.water) json["water"] = WaterJson(*map.water);

@@ -18,6 +18,7 @@
 #include "colmap_seapoint/pictures/picture_scale.h"
 #include "colmap_seapoint/pipeline/orthomosaic/map_files.h"
 #include "colmap_seapoint/pipeline/orthomosaic/map_json.h"
+#include "colmap_seapoint/pipeline/orthomosaic/map_memory_file.h"
 #include "colmap_seapoint/workspace/output_paths.h"
 
 namespace colmap_seapoint {
@@ -112,13 +113,23 @@ std::string Make(const OrthomosaicMakerOptions& options, OutputFolder* folder, R
       model,          options.cloud_path,
       units,          [&](size_t i) { return shelf.Read(i); },
       folder->Path(), [&](double share) { advance((1 - kFilesShare) * share); }};
-  MapFiles files(folder, units, num_pictures, options.run.num_threads);
+  std::optional<MapMemory> before;
+  if (options.former) before = ReadMapMemory(options.former->memory);
+  if (before) inputs.before = &*before;
+  MapFiles files(folder, units, num_pictures, options.run.num_threads,
+                 options.former ? options.former->folder : fs::path());
   const OrthomosaicSummary map =
       MakeOrthomosaic(options.map.Options(options.run.num_threads), inputs, &files);
   files.Finish([&](double share) { advance(1 - kFilesShare * (1 - share)); });
   WriteTextFile(folder->Path() / kMapSourceTable, SourceTable(map, model));
   WriteTextFile(folder->Path() / kMapDescription, MapJson(map, files.Placement(), model));
+  if (!options.memory_path.empty()) WriteMapMemory(options.memory_path, map.memory);
   progress.Finish();
+  if (before) {
+    LogInfo("The map of " + std::to_string(before->exposure.Gains().size()) +
+            " pictures is continued: " + std::to_string(map.num_tiles_drawn) + " of " +
+            std::to_string(map.num_tiles) + " tiles are drawn anew");
+  }
   shelf.NameUnread(model, report);
   report->images_used = static_cast<int64_t>(map.pictures_used.size());
   report->inputs =

@@ -1,11 +1,13 @@
 // orthomosaic: model + pictures + cloud -> relief and true orthomosaic on one grid, as GeoTIFFs.
 #pragma once
 
-#include <functional>
+#include <filesystem>
+#include <optional>
 #include <string>
 
 #include "colmap_seapoint/base/run_options.h"
 #include "colmap_seapoint/io/files/run_report.h"
+#include "colmap_seapoint/pipeline/orthomosaic/former_map.h"
 #include "colmap_seapoint/pipeline/orthomosaic/map_settings.h"
 
 namespace colmap_seapoint {
@@ -18,6 +20,9 @@ struct OrthomosaicMakerOptions {
   std::string mask_path;    // folder of COLMAP's masks; empty = none
   MapSettings map;
   RunOptions run;
+  // Set by the chain.
+  std::optional<FormerMap> former;    // the map that is continued
+  std::filesystem::path memory_path;  // gets what continues this one; empty: nothing does
 
   void Bind(OptionTable* table);
 };

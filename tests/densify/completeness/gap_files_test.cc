@@ -111,6 +111,12 @@ TEST_F(GapFiles, ReportIsReadBack) {
     EXPECT_EQ(former.gaps[i].rings, result_.gaps[i].outline);
   }
   EXPECT_EQ(former.last_id, result_.last_id);
+  ASSERT_EQ(former.pictures.size(), model_.images.size());
+  EXPECT_EQ(former.pictures[3].name, model_.images[3].name);
+  EXPECT_EQ(former.pictures[3].cam_from_world.translation,
+            model_.images[3].cam_from_world.translation);
+  EXPECT_EQ(FormerReportText(ParseFormerReport(FormerReportText(former), "")),
+            FormerReportText(former));
   WriteTextFile(path, "[]");
   EXPECT_THROW(ReadFormerReport(path), Error);
   std::filesystem::remove(path);
