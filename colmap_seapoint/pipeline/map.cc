@@ -48,12 +48,13 @@ LensRule LensRuleOf(const AutomaticReconstructorOptions& options) {
   return options.reader.camera_params.empty() ? LensRule::kFind : LensRule::kHold;
 }
 
-// How it maps, whatever it maps.
+// How it maps, whatever it maps. What live rounds made is none of the others': a chain of additions
+// to what the first few pictures told.
 std::string PlanText(const MappingPlan& plan) {
   const MapperJob& job = plan.job;
   return plan.colmap.version + LensText(job.lens) + (job.thins_matches ? "thinned" : "") +
          (job.adjusts_principal_point ? "adjusted" : "") + (job.joins_models ? "joined" : "") +
-         (job.global_round ? "global" : "") + Text(job.first_round) + Text(job.later_rounds);
+         (job.global_round ? "global" : "") + (plan.is_live ? "live" : "") + Text(job.first_round) + Text(job.later_rounds);
 }
 
 // The mapper's work depends on what the database holds, on what that was begun with, and on the
@@ -76,10 +77,26 @@ PictureLines LinesOf(const ColmapDatabase& database) {
   return lines;
 }
 
+struct MadeOf {
+  PictureLines pictures;
+  size_t num_begun = 0;  // pictures when it was last mapped anew, not added to
+};
+
+void to_json(nlohmann::ordered_json& json, const MadeOf& made_of) {
+  json = {{"pictures", made_of.pictures}, {"num_begun", made_of.num_begun}};
+}
+
+void from_json(const nlohmann::ordered_json& json, MadeOf& made_of) {
+  made_of = {json.at("pictures").get<PictureLines>(), json.at("num_begun").get<size_t>()};
+}
+
 // Beside the mapper's own record, which is forgotten as soon as it has to be done again.
 Stage ModelStage(const MappingPlan& plan) {
   return {"model_to_continue", kMapperVersion, PlanText(plan), ""};
 }
+
+// A live model grows by one picture at a time: from 3 to 12, 48, ... it is added to.
+constexpr size_t kMaxLiveGrowth = 4;
 
 // Whether the cameras of all matched pictures are the model's, and at least half of the pictures
 // too: what a few pictures told of the lens is not to be held for many.
@@ -97,13 +114,17 @@ bool CanTakeIn(const fs::path& model_path, const std::vector<std::string>& pictu
 // The model that an earlier run made of some of these pictures, as they are now and in the same
 // way, where it is one alone.
 std::optional<fs::path> ModelToContinue(const MappingPlan& plan, const ColmapDatabase& database,
-                                        const WorkspaceState& state,
+                                        const std::optional<MadeOf>& made_of,
                                         const std::vector<fs::path>& models) {
-  if (models.size() != 1 || plan.job.lens == LensRule::kLeaveToMapper) return std::nullopt;
-  const auto made_of = ResultIfDone<PictureLines>(state, ModelStage(plan));
-  if (!made_of) return std::nullopt;
+  if (models.size() != 1 || plan.job.lens == LensRule::kLeaveToMapper || !made_of) {
+    return std::nullopt;
+  }
   const PictureLines lines = LinesOf(database);
-  if (!std::includes(lines.begin(), lines.end(), made_of->begin(), made_of->end())) {
+  if (!std::includes(lines.begin(), lines.end(), made_of->pictures.begin(),
+                     made_of->pictures.end())) {
+    return std::nullopt;
+  }
+  if (plan.is_live && plan.job.pictures.size() > kMaxLiveGrowth * made_of->num_begun) {
     return std::nullopt;
   }
   if (!CanTakeIn(models.front(), plan.job.pictures, database)) return std::nullopt;
@@ -233,8 +254,9 @@ Mapping MapPictures(MappingPlan plan, const ColmapDatabase& database, WorkspaceS
   using Seconds = std::vector<RunReport::Stage>;
   const auto work = [&]() -> StageOutput<Seconds> {
     RefuseForeignModels(plan.sparse, *state->Folder());
+    const auto made_of = ResultIfDone<MadeOf>(*state, ModelStage(plan));
     plan.job.continued_model =
-        ModelToContinue(plan, database, *state, OurModels(plan.sparse, *state->Folder()));
+        ModelToContinue(plan, database, made_of, OurModels(plan.sparse, *state->Folder()));
     RunReport report;
     {
       StageTimer timer(&report, "mapper");
@@ -245,7 +267,9 @@ Mapping MapPictures(MappingPlan plan, const ColmapDatabase& database, WorkspaceS
     }
     PutModelsInPlace(plan.job.output_path, plan.sparse, state->Folder());
     const std::vector<fs::path> models = OurModels(plan.sparse, *state->Folder());
-    FinishStage(ModelStage(plan), LinesOf(database), models, state);
+    const size_t num_begun =
+        plan.job.continued_model ? made_of->num_begun : plan.job.pictures.size();
+    FinishStage(ModelStage(plan), MadeOf{LinesOf(database), num_begun}, models, state);
     return {report.stages, models};
   };
   const Seconds seconds = RunStage<Seconds>(state, stage, work);

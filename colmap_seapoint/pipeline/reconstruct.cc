@@ -1,5 +1,6 @@
 #include "colmap_seapoint/pipeline/reconstruct.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -36,6 +37,7 @@
 #include "colmap_seapoint/pipeline/page/job_page.h"
 #include "colmap_seapoint/pipeline/scale_models.h"
 #include "colmap_seapoint/report/reconstruction_summary.h"
+#include "colmap_seapoint/system/battery.h"
 #include "colmap_seapoint/workspace/workspace_database.h"
 #include "feature/match_features.h"
 
@@ -142,16 +144,33 @@ FeatureExtractorOptions ExtractorOptions(const Options& options, const Workspace
   return extractor;
 }
 
-// Each once. Throws Error when that leaves a single one.
-PictureSet ReadPictures(const Options& options, const Workspace& workspace) {
+// As if the others were not there.
+void KeepOnly(const std::set<std::string>& names, PictureSet* pictures) {
+  const auto keep = [&](auto* list) {
+    list->erase(std::remove_if(list->begin(), list->end(),
+                               [&](const auto& one) { return names.count(one.name) == 0; }),
+                list->end());
+  };
+  keep(&pictures->readable);
+  keep(&pictures->left_out);
+  pictures->num_listed =
+      static_cast<int64_t>(pictures->readable.size() + pictures->left_out.size());
+}
+
+// Each once; of `live`, where given, alone. Throws Error when that leaves none or a single one.
+PictureSet ReadPictures(const Options& options, const Workspace& workspace,
+                        const std::set<std::string>* live) {
   PictureSet pictures = ReadPictureSet(ExtractorOptions(options, workspace));
+  if (live != nullptr) KeepOnly(*live, &pictures);
   for (auto& twin :
        LeaveOutDuplicates(workspace.images, options.run.num_threads, &pictures.readable)) {
     pictures.left_out.push_back(std::move(twin));
   }
   if (pictures.readable.size() > 1) return pictures;
   throw Error(options.image_path,
-              "holds one picture that can be used, " + pictures.readable.front().name,
+              pictures.readable.empty()
+                  ? "holds no picture that can be used"
+                  : "holds one picture that can be used, " + pictures.readable.front().name,
               "depth takes two pictures at least that show the same place from different points: "
               "add more, which overlap by half or more");
 }
@@ -333,12 +352,14 @@ CommandResult WriteReport(const Workspace& workspace, const std::vector<ModelSum
   return {report.left_out.empty(), summary + "report: " + workspace.report.string() + "\n"};
 }
 
-}  // namespace
+struct Reconstruction {
+  CommandResult result;
+  RunReport report;
+};
 
-CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& given) {
-  given.Check();
-  const Options options = WithRigsCameras(given);
-  if (options.estimate_only) return EstimateJob(options);
+// Of all pictures, or of those of `live` alone.
+Reconstruction Reconstruct(const Options& options, const std::set<std::string>* live) {
+  const BatteryGuard battery(options.pause_on_battery);
   Workspace workspace(options.image_path, options.workspace_path);
   MappingPlan plan = PlanMapping(options, workspace);
   WorkspaceState state(workspace.root, workspace.Names());
@@ -348,9 +369,12 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& giv
 
   JobProgress progress;
   progress.Plan(CostsHere(SizeBeforeIntake(options, workspace.images)), {});
-  TakeInPictures({options.frames, options.run.num_threads}, &workspace, &state, &report);
+  if (live == nullptr) {
+    TakeInPictures({options.frames, options.run.num_threads}, &workspace, &state, &report);
+  }
+  plan.is_live = live != nullptr;
   plan.job.image_path = workspace.images;
-  const PictureSet pictures = ReadPictures(options, workspace);
+  const PictureSet pictures = ReadPictures(options, workspace, live);
   CheckScaleNames(options.scale, NamesOf(pictures));
   const DatabaseInputs inputs = InputsOfDatabase(options, pictures.readable);
   const Stage begin = DatabaseStage(options, inputs);
@@ -369,8 +393,22 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& giv
   DensifyModels(options, workspace, mapping.fingerprint, &database, &state, &models, &report);
   MakeMaps(options, workspace, mapping.fingerprint, &state, &models, &report);
   ReportCompletenessOfModels(options, workspace, mapping.fingerprint, &state, &models, &report);
-  RememberJob(&progress);
-  return WriteReport(workspace, models, report);
+  if (live == nullptr) RememberJob(&progress);
+  return {WriteReport(workspace, models, report), report};
+}
+
+}  // namespace
+
+CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& given) {
+  given.Check();
+  const Options options = WithRigsCameras(given);
+  if (options.estimate_only) return EstimateJob(options);
+  return Reconstruct(options, nullptr).result;
+}
+
+RunReport ReconstructLive(const AutomaticReconstructorOptions& given,
+                          const std::set<std::string>& pictures) {
+  return Reconstruct(WithRigsCameras(given), &pictures).report;
 }
 
 }  // namespace colmap_seapoint

@@ -44,6 +44,18 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
   table->Add("estimate_only", &estimate_only,
              "say what the job will take in time, disk and memory, as JSON, and do nothing",
              "ours");
+  table->Add("pause_on_battery", &pause_on_battery,
+             "work pauses while the battery is discharged and holds so many per cent or less, and "
+             "goes on when the machine has power again; 0 = never",
+             "ours", 0, 100);
+  table->Add("watch", &watch,
+             "take in pictures as they come into --image_path, say when their overlap drops, and "
+             "keep map and page up to date; Ctrl-C: no more will come, make the whole of it",
+             "ours");
+  table->Add("watch_idle", &watch_idle,
+             "with --watch: seconds without a new picture after which no more are expected; 0 = "
+             "until Ctrl-C",
+             "ours", 0, 1e6);
   table->Add("map", &makes_map,
              "make relief and orthomosaic of every model, in map/; 0 = none, and those of earlier "
              "runs are removed",
@@ -92,6 +104,9 @@ void AutomaticReconstructorOptions::Check() const {
   if (!map_problem.empty()) throw UsageError("--Orthomosaic." + map_problem);
   if (!std::filesystem::exists(image_path)) {
     throw Error(image_path, "there is no such folder or video", "check --image_path");
+  }
+  if (watch && !std::filesystem::is_directory(image_path)) {
+    throw UsageError("--watch: " + image_path + " is no folder that pictures could come into");
   }
   CheckRigFolders(rig, image_path);
   CheckScaleTables(scale);
