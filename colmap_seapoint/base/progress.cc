@@ -117,8 +117,9 @@ double LongestSilence() {
   if (IsTerminal()) return kRewriteBeatSeconds;
   std::lock_guard<std::mutex> lock(observer_mutex);
   WorkObserver* const all = observer;
-  return all != nullptr ? std::min(all->SecondsBetweenLines(), kMaxSilenceSeconds)
-                        : kMaxSilenceSeconds;
+  return all != nullptr && !SomeThreadIsQuiet()
+             ? std::min(all->SecondsBetweenLines(), kMaxSilenceSeconds)
+             : kMaxSilenceSeconds;
 }
 
 // What is said then. A part that has ended leaves silence behind it, too.

@@ -48,13 +48,12 @@ LensRule LensRuleOf(const AutomaticReconstructorOptions& options) {
   return options.reader.camera_params.empty() ? LensRule::kFind : LensRule::kHold;
 }
 
-// How it maps, whatever it maps. What live rounds made is none of the others': a chain of additions
-// to what the first few pictures told.
+// How it maps, whatever it maps.
 std::string PlanText(const MappingPlan& plan) {
   const MapperJob& job = plan.job;
   return plan.colmap.version + LensText(job.lens) + (job.thins_matches ? "thinned" : "") +
          (job.adjusts_principal_point ? "adjusted" : "") + (job.joins_models ? "joined" : "") +
-         (job.global_round ? "global" : "") + (plan.is_live ? "live" : "") + Text(job.first_round) + Text(job.later_rounds);
+         (job.global_round ? "global" : "") + Text(job.first_round) + Text(job.later_rounds);
 }
 
 // The mapper's work depends on what the database holds, on what that was begun with, and on the
@@ -95,8 +94,9 @@ Stage ModelStage(const MappingPlan& plan) {
   return {"model_to_continue", kMapperVersion, PlanText(plan), ""};
 }
 
-// A live model grows by one picture at a time: from 3 to 12, 48, ... it is added to.
-constexpr size_t kMaxLiveGrowth = 4;
+// A model may grow by one picture at a time: what three pictures told of the lens is held up to the
+// twelfth, what twelve told up to the 48th.
+constexpr size_t kMaxGrowth = 4;
 
 // Whether the cameras of all matched pictures are the model's, and at least half of the pictures
 // too: what a few pictures told of the lens is not to be held for many.
@@ -124,9 +124,7 @@ std::optional<fs::path> ModelToContinue(const MappingPlan& plan, const ColmapDat
                      made_of->pictures.end())) {
     return std::nullopt;
   }
-  if (plan.is_live && plan.job.pictures.size() > kMaxLiveGrowth * made_of->num_begun) {
-    return std::nullopt;
-  }
+  if (plan.job.pictures.size() > kMaxGrowth * made_of->num_begun) return std::nullopt;
   if (!CanTakeIn(models.front(), plan.job.pictures, database)) return std::nullopt;
   return models.front();
 }

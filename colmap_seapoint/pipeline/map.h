@@ -18,7 +18,6 @@ struct MappingPlan {
   ColmapProgram colmap;
   MapperJob job;                 // but for the pictures, which are known once they are matched
   std::filesystem::path sparse;  // where the models are put when all of them are made
-  bool is_live = false;          // a round of a survey that is still being made
 };
 
 // Checks what mapping needs before any work is done. Throws Error when there is no COLMAP,

@@ -1,6 +1,5 @@
 #include "colmap_seapoint/pipeline/reconstruct.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -144,33 +143,16 @@ FeatureExtractorOptions ExtractorOptions(const Options& options, const Workspace
   return extractor;
 }
 
-// As if the others were not there.
-void KeepOnly(const std::set<std::string>& names, PictureSet* pictures) {
-  const auto keep = [&](auto* list) {
-    list->erase(std::remove_if(list->begin(), list->end(),
-                               [&](const auto& one) { return names.count(one.name) == 0; }),
-                list->end());
-  };
-  keep(&pictures->readable);
-  keep(&pictures->left_out);
-  pictures->num_listed =
-      static_cast<int64_t>(pictures->readable.size() + pictures->left_out.size());
-}
-
-// Each once; of `live`, where given, alone. Throws Error when that leaves none or a single one.
-PictureSet ReadPictures(const Options& options, const Workspace& workspace,
-                        const std::set<std::string>* live) {
+// Each once. Throws Error when that leaves a single one.
+PictureSet ReadPictures(const Options& options, const Workspace& workspace) {
   PictureSet pictures = ReadPictureSet(ExtractorOptions(options, workspace));
-  if (live != nullptr) KeepOnly(*live, &pictures);
   for (auto& twin :
        LeaveOutDuplicates(workspace.images, options.run.num_threads, &pictures.readable)) {
     pictures.left_out.push_back(std::move(twin));
   }
   if (pictures.readable.size() > 1) return pictures;
   throw Error(options.image_path,
-              pictures.readable.empty()
-                  ? "holds no picture that can be used"
-                  : "holds one picture that can be used, " + pictures.readable.front().name,
+              "holds one picture that can be used, " + pictures.readable.front().name,
               "depth takes two pictures at least that show the same place from different points: "
               "add more, which overlap by half or more");
 }
@@ -352,13 +334,12 @@ CommandResult WriteReport(const Workspace& workspace, const std::vector<ModelSum
   return {report.left_out.empty(), summary + "report: " + workspace.report.string() + "\n"};
 }
 
-struct Reconstruction {
-  CommandResult result;
-  RunReport report;
-};
+}  // namespace
 
-// Of all pictures, or of those of `live` alone.
-Reconstruction Reconstruct(const Options& options, const std::set<std::string>* live) {
+CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& given) {
+  given.Check();
+  const Options options = WithRigsCameras(given);
+  if (options.estimate_only) return EstimateJob(options);
   const BatteryGuard battery(options.pause_on_battery);
   Workspace workspace(options.image_path, options.workspace_path);
   MappingPlan plan = PlanMapping(options, workspace);
@@ -369,12 +350,9 @@ Reconstruction Reconstruct(const Options& options, const std::set<std::string>* 
 
   JobProgress progress;
   progress.Plan(CostsHere(SizeBeforeIntake(options, workspace.images)), {});
-  if (live == nullptr) {
-    TakeInPictures({options.frames, options.run.num_threads}, &workspace, &state, &report);
-  }
-  plan.is_live = live != nullptr;
+  TakeInPictures({options.frames, options.run.num_threads}, &workspace, &state, &report);
   plan.job.image_path = workspace.images;
-  const PictureSet pictures = ReadPictures(options, workspace, live);
+  const PictureSet pictures = ReadPictures(options, workspace);
   CheckScaleNames(options.scale, NamesOf(pictures));
   const DatabaseInputs inputs = InputsOfDatabase(options, pictures.readable);
   const Stage begin = DatabaseStage(options, inputs);
@@ -393,22 +371,8 @@ Reconstruction Reconstruct(const Options& options, const std::set<std::string>* 
   DensifyModels(options, workspace, mapping.fingerprint, &database, &state, &models, &report);
   MakeMaps(options, workspace, mapping.fingerprint, &state, &models, &report);
   ReportCompletenessOfModels(options, workspace, mapping.fingerprint, &state, &models, &report);
-  if (live == nullptr) RememberJob(&progress);
-  return {WriteReport(workspace, models, report), report};
-}
-
-}  // namespace
-
-CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& given) {
-  given.Check();
-  const Options options = WithRigsCameras(given);
-  if (options.estimate_only) return EstimateJob(options);
-  return Reconstruct(options, nullptr).result;
-}
-
-RunReport ReconstructLive(const AutomaticReconstructorOptions& given,
-                          const std::set<std::string>& pictures) {
-  return Reconstruct(WithRigsCameras(given), &pictures).report;
+  RememberJob(&progress);
+  return WriteReport(workspace, models, report);
 }
 
 }  // namespace colmap_seapoint

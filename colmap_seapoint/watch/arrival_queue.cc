@@ -1,19 +1,37 @@
 #include "colmap_seapoint/watch/arrival_queue.h"
 
+#include <algorithm>
+#include <cctype>
+#include <exception>
+#include <iterator>
+#include <system_error>
 #include <utility>
 
-#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/picture.h"
 #include "colmap_seapoint/base/progress.h"
+#include "colmap_seapoint/io/image/jpeg_exif.h"
+#include "colmap_seapoint/system/failure_line.h"
+#include "colmap_seapoint/watch/small_copy.h"
 
 namespace colmap_seapoint {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr std::chrono::milliseconds kBetweenLooks{500};
+
+// "dive/a.jpg", and "dive/a.png.jpg" of a picture that is none.
+std::string CopyName(const std::string& name) {
+  std::string extension = fs::path(name).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return extension == ".jpg" || extension == ".jpeg" ? name : name + ".jpg";
+}
 
 }  // namespace
 
-ArrivalQueue::ArrivalQueue(const std::filesystem::path& folder)
-    : folder_(folder), thread_([this] { Watch(); }) {}
+ArrivalQueue::ArrivalQueue(fs::path folder, fs::path copies)
+    : folder_(std::move(folder)), copies_(std::move(copies)), thread_([this] { Watch(); }) {}
 
 ArrivalQueue::~ArrivalQueue() {
   {
@@ -39,18 +57,28 @@ double ArrivalQueue::LastArrival() const {
   return last_arrival_;
 }
 
-void ArrivalQueue::LookOnce(PictureArrivals* arrivals, OverlapWatch* overlaps) {
-  arrivals->Look(Now(), [&](const Arrival& arrival, const GrayImage& picture) {
-    NewPicture found;
-    found.arrival = arrival;
-    found.overlap.is_first = true;
-    if (!picture.Empty()) found.overlap = overlaps->Add(arrival.name, picture);
-    if (!found.overlap.warning.empty()) LogWarning(found.overlap.warning);
-    const std::lock_guard<std::mutex> lock(mutex_);
-    new_.push_back(std::move(found));
-    last_arrival_ = Now();
-    changed_.notify_all();
+std::vector<NewPicture> ArrivalQueue::LookOnce(PictureArrivals* arrivals,
+                                               OverlapWatch* overlaps) const {
+  std::vector<NewPicture> found;
+  arrivals->Look(Now(), [&](const Arrival& arrival, const ColorImage& picture) {
+    const ColorImage small = SmallCopy(picture);
+    NewPicture one = {arrival, CopyName(arrival.name), overlaps->Add(arrival.name, LumaOf(small))};
+    if (!one.overlap.warning.empty()) LogWarning(one.overlap.warning);
+    const fs::path copy = copies_ / one.copy_name;
+    std::error_code error;  // whose result WriteJpeg says
+    fs::create_directories(copy.parent_path(), error);
+    WriteJpeg(copy, small, CleanExifOf(folder_ / arrival.name));
+    found.push_back(std::move(one));
   });
+  return found;
+}
+
+void ArrivalQueue::Publish(std::vector<NewPicture> found) {
+  if (found.empty()) return;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::move(found.begin(), found.end(), std::back_inserter(new_));
+  last_arrival_ = Now();
+  changed_.notify_all();
 }
 
 // A folder that is gone may come back: a disk that was pulled is put back.
@@ -62,11 +90,11 @@ void ArrivalQueue::Watch() {
   while (!is_over_) {
     lock.unlock();
     try {
-      LookOnce(&arrivals, &overlaps);
+      Publish(LookOnce(&arrivals, &overlaps));
       if (is_gone) LogInfo(folder_.string() + " is there again");
       is_gone = false;
-    } catch (const Error& error) {
-      if (!is_gone) LogWarning(std::string(error.what()) + "; waiting for it to be there again");
+    } catch (const std::exception& error) {
+      if (!is_gone) LogWarning(FailureLine(error) + "; tried again until it is mended");
       is_gone = true;
     }
     lock.lock();

@@ -17,17 +17,21 @@ namespace colmap_seapoint {
 
 struct NewPicture {
   Arrival arrival;
-  NewOverlap overlap;  // is_first: there was nothing to compare it with
+  std::string copy_name;  // of its small copy
+  NewOverlap overlap;
 };
 
 class ArrivalQueue {
  public:
-  explicit ArrivalQueue(const std::filesystem::path& folder);
+  // Small copies of what comes into `folder`, JPEGs with its EXIF, are put into `copies`, which is
+  // made when missing.
+  ArrivalQueue(std::filesystem::path folder, std::filesystem::path copies);
   ~ArrivalQueue();
   ArrivalQueue(const ArrivalQueue&) = delete;
   ArrivalQueue& operator=(const ArrivalQueue&) = delete;
 
-  // All that came since the last call, in the order in which it came; waits for it for a moment.
+  // All that came since the last call, in the order in which it came, what came together at once;
+  // waits for it for a moment.
   std::vector<NewPicture> Take();
   double Now() const;  // seconds since the watch began
   // When something came last, or could have come but for a folder that was gone; 0: never.
@@ -35,9 +39,10 @@ class ArrivalQueue {
 
  private:
   void Watch();
-  void LookOnce(PictureArrivals* arrivals, OverlapWatch* overlaps);
+  std::vector<NewPicture> LookOnce(PictureArrivals* arrivals, OverlapWatch* overlaps) const;
+  void Publish(std::vector<NewPicture> found);
 
-  const std::filesystem::path folder_;
+  const std::filesystem::path folder_, copies_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;

@@ -4,22 +4,54 @@
 #include <cmath>
 #include <exception>
 #include <iterator>
+#include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/hold/quiet_thread.h"
 #include "colmap_seapoint/base/median.h"
 #include "colmap_seapoint/base/progress.h"
-#include "colmap_seapoint/io/files/run_report.h"
+#include "colmap_seapoint/io/files/input_stream.h"
 #include "colmap_seapoint/pipeline/reconstruct.h"
 #include "colmap_seapoint/system/failure_line.h"
 
 namespace colmap_seapoint {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr size_t kNamedPictures = 3;
 
-// What is made while pictures come: the last run, of all of them, makes the rest.
-AutomaticReconstructorOptions LiveOptions(AutomaticReconstructorOptions options) { return options; }
+// Of a coarse answer (scripts/mission/run_step.py): a sixth of the work, and a covered share within
+// some points of the whole job's.
+AutomaticReconstructorOptions LiveOptions(AutomaticReconstructorOptions options,
+                                          const LiveFolders& folders) {
+  options.image_path = folders.images.string();
+  options.workspace_path = folders.root.string();
+  options.quality = "field";
+  options.check_disk = false;
+  options.extraction.min_num_features = 600;
+  options.extraction.max_num_features = 800;
+  options.extraction.descriptor = SeaPointExtractionOptions().descriptor;
+  options.densification.step = 2;
+  options.densification.write_maps = false;
+  options.reader.camera_params.clear();
+  options.reader.mask_path.clear();
+  options.scale = ScaleSources();
+  return options;
+}
+
+// What the last round left out.
+std::set<std::string> LeftOut(const fs::path& workspace) {
+  std::set<std::string> names;
+  const auto file = OpenIfThere(workspace / "report" / "run.json");
+  if (file == nullptr) return names;
+  const auto report = nlohmann::ordered_json::parse(*file, nullptr, false);
+  for (const auto& entry : report.value("left_out", nlohmann::ordered_json::array())) {
+    names.insert(entry.value("name", ""));
+  }
+  return names;
+}
 
 // "c.jpg (71 %)" of a picture and its overlap with the last ones.
 std::string NameOf(const NewPicture& picture) {
@@ -45,12 +77,25 @@ std::string Range(const std::vector<double>& seconds) {
 
 }  // namespace
 
+LiveFolders::LiveFolders(const std::string& workspace_path)
+    : root(fs::absolute(workspace_path).lexically_normal() / "watch"),
+      incoming(root / "incoming"),
+      images(root / "images") {}
+
 LiveSurvey::LiveSurvey(const AutomaticReconstructorOptions& options)
-    : options_(LiveOptions(options)) {}
+    : folders_(options.workspace_path), options_(LiveOptions(options, folders_)) {}
 
 void LiveSurvey::Add(const NewPicture& picture) {
-  pictures_.insert(picture.arrival.name);
-  since_[picture.arrival.name] = picture.arrival.seconds;
+  const fs::path to = folders_.images / picture.copy_name;
+  std::error_code error;
+  fs::create_directories(to.parent_path(), error);
+  if (!error) fs::rename(folders_.incoming / picture.copy_name, to, error);
+  if (error) {
+    throw Error(to.string(), "cannot be put there (" + error.message() + ")",
+                "check the folder's permissions, and the disk");
+  }
+  pictures_.insert(picture.copy_name);
+  since_[picture.copy_name] = picture.arrival.seconds;
   new_.push_back(picture);
 }
 
@@ -58,21 +103,18 @@ bool LiveSurvey::HasNews() const { return !new_.empty() && pictures_.size() >= k
 
 void LiveSurvey::RunRound(const std::function<double()>& now) {
   ++num_rounds_;
-  const std::string round = "Round " + std::to_string(num_rounds_) + ": ";
-  std::set<std::string> left_out;
   try {
     const QuietThread quiet(GetLogLevel() < LogLevel::kDebug);
-    for (const auto& entry : ReconstructLive(options_, pictures_).left_out) {
-      left_out.insert(entry.name);
-    }
+    RunAutomaticReconstructor(options_);
   } catch (const UsageError&) {
-    throw;  // which no further picture mends
+    throw;
   } catch (const std::exception& error) {
-    LogWarning(round + NamesOf(new_) + ": " + FailureLine(error));
+    LogWarning("Round " + std::to_string(num_rounds_) + ": " + NamesOf(new_) + ": " +
+               FailureLine(error));
     new_.clear();
     return;
   }
-  TellOfRound(left_out, now());
+  TellOfRound(LeftOut(folders_.root), now());
 }
 
 void LiveSurvey::TellOfRound(const std::set<std::string>& left_out, double now) {

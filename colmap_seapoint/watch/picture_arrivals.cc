@@ -16,9 +16,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // Empty while it is not whole.
-GrayImage DecodeIfWhole(const fs::path& path) {
+ColorImage DecodeIfWhole(const fs::path& path) {
   try {
-    return ReadGrayImage(path);
+    return ReadColorImage(path);
   } catch (const Error&) {
     return {};
   }
@@ -42,6 +42,19 @@ bool PictureArrivals::Stat(const std::string& name, Picture* picture) const {
   return true;
 }
 
+void PictureArrivals::LookAt(const std::string& name, double now, const TakeArrival& take) {
+  const bool is_new = pictures_.count(name) == 0;
+  Picture& picture = pictures_[name];
+  const bool was_whole = picture.is_whole;
+  if (!Stat(name, &picture)) return;
+  if (is_new || (was_whole && !picture.is_whole)) picture.seconds = now;
+  if (picture.was_tried || !picture.is_steady) return;
+  picture.was_tried = true;
+  const ColorImage pixels = DecodeIfWhole(folder_ / name);
+  picture.is_whole = !pixels.Empty();
+  if (picture.is_whole) take({name, picture.seconds}, pixels);
+}
+
 void PictureArrivals::Look(double now, const TakeArrival& take) {
   const std::vector<std::string> names = ListFolder(folder_).pictures;
   if (names.empty() && !pictures_.empty()) {
@@ -49,23 +62,8 @@ void PictureArrivals::Look(double now, const TakeArrival& take) {
                 "holds none of its " + std::to_string(pictures_.size()) + " pictures any more",
                 "put its disk back");
   }
-  std::set<std::string> there;
-  for (const std::string& name : names) {
-    there.insert(name);
-    const bool is_new = pictures_.count(name) == 0;
-    Picture& picture = pictures_[name];
-    if (is_new) picture.seconds = now;
-    const bool was_whole = picture.is_whole;
-    if (!Stat(name, &picture)) continue;
-    if (was_whole && !picture.is_whole) picture.seconds = now;
-    if (picture.was_tried || (has_looked_ && !picture.is_steady)) continue;
-    picture.was_tried = true;
-    GrayImage pixels;
-    if (has_looked_) pixels = DecodeIfWhole(folder_ / name);
-    picture.is_whole = !has_looked_ || !pixels.Empty();
-    if (picture.is_whole) take({name, picture.seconds}, pixels);
-  }
-  has_looked_ = true;
+  for (const std::string& name : names) LookAt(name, now, take);
+  const std::set<std::string> there(names.begin(), names.end());
   for (auto picture = pictures_.begin(); picture != pictures_.end();) {
     picture = there.count(picture->first) > 0 ? std::next(picture) : pictures_.erase(picture);
   }

@@ -20,8 +20,7 @@ struct Arrival {
   double seconds = 0;  // when it was seen first, whole or not, by the clock of Look()
 };
 
-// The picture is empty where it was there before the first look.
-using TakeArrival = std::function<void(const Arrival& arrival, const GrayImage& picture)>;
+using TakeArrival = std::function<void(const Arrival& arrival, const ColorImage& picture)>;
 
 class PictureArrivals {
  public:
@@ -29,9 +28,9 @@ class PictureArrivals {
 
   // Hands over the pictures that are whole since the last look, in the order of their names: their
   // size and time have not changed between two looks, and they can be decoded to the last row.
-  // Others wait; one that was changed comes again. What is there at the first look is taken as it
-  // is. Reads what is new, once for each change. Throws Error when the folder cannot be read, or
-  // has lost all of its pictures at once, as the mount point of a disk that was pulled.
+  // Others wait; one that was changed comes again. Reads what is new, once for each change. Throws
+  // Error when the folder cannot be read, or has lost all of its pictures at once, as the mount
+  // point of a disk that was pulled.
   void Look(double now, const TakeArrival& take);
 
   // Those that wait for the rest of their bytes.
@@ -48,10 +47,10 @@ class PictureArrivals {
   };
 
   bool Stat(const std::string& name, Picture* picture) const;
+  void LookAt(const std::string& name, double now, const TakeArrival& take);
 
   const std::filesystem::path folder_;
   std::map<std::string, Picture> pictures_;
-  bool has_looked_ = false;
 };
 
 }  // namespace colmap_seapoint

@@ -26,7 +26,7 @@ void WatchFolder(const Options& options) {
                : std::string("after Ctrl-C ")) +
           "the whole of it is made");
   const FinishRequest finish;
-  ArrivalQueue queue(options.image_path);
+  ArrivalQueue queue(options.image_path, LiveFolders(options.workspace_path).incoming);
   LiveSurvey survey(options);
   while (true) {
     for (const NewPicture& picture : queue.Take()) survey.Add(picture);

@@ -16,5 +16,6 @@ class QuietThread {
 };
 
 bool ThisThreadIsQuiet();
+bool SomeThreadIsQuiet();
 
 }  // namespace colmap_seapoint
