@@ -139,6 +139,9 @@ TEST_F(WatchSurvey, WantsAFolder) {
   const CliResult result = Reconstruct("dive.mp4", "watched", {"--watch", "1"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_NE(result.LastErrorLine().find("--watch"), std::string::npos) << result.Text();
+  const CliResult inside = Reconstruct("images", "images/workspace", {"--watch", "1"});
+  EXPECT_EQ(inside.exit_code, 2);
+  EXPECT_NE(inside.LastErrorLine().find("is watched"), std::string::npos) << inside.Text();
 }
 
 }  // namespace
