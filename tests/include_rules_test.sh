@@ -7,9 +7,10 @@ set -uf  # -f: the stars below are patterns of rooms, not of files
 cd "$1" || exit 1
 
 read -r -d '' rooms <<'END'
-colmap_seapoint/base
-colmap_seapoint/system          colmap_seapoint/base
-colmap_seapoint/io/files        colmap_seapoint/base colmap_seapoint/system
+colmap_seapoint/base            colmap_seapoint/base/hold
+colmap_seapoint/base/hold
+colmap_seapoint/system          colmap_seapoint/base colmap_seapoint/base/hold
+colmap_seapoint/io/files        colmap_seapoint/base colmap_seapoint/base/hold colmap_seapoint/system
 colmap_seapoint/io/navigation   colmap_seapoint/base colmap_seapoint/io/files
 colmap_seapoint/io/outputs      colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files
 colmap_seapoint/io/image        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files
@@ -71,8 +72,9 @@ colmap_seapoint/pipeline/orthomosaic colmap_seapoint/base colmap_seapoint/system
 colmap_seapoint/pipeline/page   colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/gaps colmap_seapoint/page colmap_seapoint/report colmap_seapoint/workspace densify/completeness densify/completeness/*
 colmap_seapoint/pipeline/markers colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/pictures colmap_seapoint/report colmap_seapoint/workspace
 colmap_seapoint/rendering       colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/workspace
+colmap_seapoint/watch           colmap_seapoint/base colmap_seapoint/base/hold colmap_seapoint/system colmap_seapoint/io/files colmap_seapoint/io/image colmap_seapoint/frames colmap_seapoint/pipeline
 colmap_seapoint/merging         colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/compare colmap_seapoint/workspace
-colmap_seapoint/cli             colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files colmap_seapoint/pipeline colmap_seapoint/pipeline/markers colmap_seapoint/pipeline/orthomosaic colmap_seapoint/rendering colmap_seapoint/merging
+colmap_seapoint/cli             colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files colmap_seapoint/pipeline colmap_seapoint/pipeline/markers colmap_seapoint/pipeline/orthomosaic colmap_seapoint/rendering colmap_seapoint/merging colmap_seapoint/watch
 colmap_seapoint                 colmap_seapoint/base colmap_seapoint/system colmap_seapoint/cli
 END
 

@@ -15,6 +15,8 @@
 #include <system_error>
 #include <thread>
 
+#include "colmap_seapoint/base/hold/work_pause.h"
+
 namespace colmap_seapoint {
 namespace {
 
@@ -69,6 +71,7 @@ class Order {
   // A producing thread's life.
   void Produce() {
     while (const auto index = Next()) {
+      WaitWhilePaused();
       Made made;
       made.is_done = true;
       try {
@@ -152,6 +155,7 @@ void ParallelFor(int num_threads, int64_t count, const std::function<void(int64_
   std::exception_ptr error;
   const auto run = [&] {
     for (int64_t i = next++; i < count; i = next++) {
+      WaitWhilePaused();
       try {
         work(i);
       } catch (...) {
@@ -179,6 +183,7 @@ void RunOrdered(int num_threads, int64_t count, int64_t window,
   const StopAtEnd stop(&order);
   for (int64_t i = 0; i < count; ++i) {
     if (team.IsEmpty()) {
+      WaitWhilePaused();
       produce(i);
     } else {
       order.Take(i);

@@ -10,6 +10,8 @@
 #include <system_error>
 #include <vector>
 
+#include "colmap_seapoint/base/hold/quiet_thread.h"
+
 namespace colmap_seapoint {
 namespace {
 
@@ -32,7 +34,10 @@ std::atomic<WorkObserver*> observer{nullptr};
 std::mutex observer_mutex;  // held while the heartbeat asks the observer, which may be leaving
 const Clock::time_point program_start = Clock::now();
 
-bool IsEnabled(LogLevel level) { return static_cast<int>(level) <= log_level.load(); }
+bool IsEnabled(LogLevel level) {
+  if (ThisThreadIsQuiet() && level != LogLevel::kError) return false;
+  return static_cast<int>(level) <= log_level.load();
+}
 
 // Names of files can hold any byte: control characters would split the line, colour it or move the
 // cursor, and are shown as they are written in C. The second half of those in two bytes of UTF-8
@@ -112,8 +117,9 @@ double LongestSilence() {
   if (IsTerminal()) return kRewriteBeatSeconds;
   std::lock_guard<std::mutex> lock(observer_mutex);
   WorkObserver* const all = observer;
-  return all != nullptr ? std::min(all->SecondsBetweenLines(), kMaxSilenceSeconds)
-                        : kMaxSilenceSeconds;
+  return all != nullptr && !SomeThreadIsQuiet()
+             ? std::min(all->SecondsBetweenLines(), kMaxSilenceSeconds)
+             : kMaxSilenceSeconds;
 }
 
 // What is said then. A part that has ended leaves silence behind it, too.

@@ -9,9 +9,9 @@
 #include "colmap_seapoint/pipeline/markers/print_markers.h"
 #include "colmap_seapoint/pipeline/match.h"
 #include "colmap_seapoint/pipeline/orthomosaic/map_maker.h"
-#include "colmap_seapoint/pipeline/reconstruct.h"
 #include "colmap_seapoint/pipeline/scale.h"
 #include "colmap_seapoint/rendering/render_cloud.h"
+#include "colmap_seapoint/watch/watch_survey.h"
 
 namespace colmap_seapoint {
 
@@ -47,7 +47,7 @@ std::vector<Command> AllCommands() {
       MakeCommand("render_cloud", "a cloud -> a picture of it, from above or as a camera saw it",
                   RunCloudRenderer),
       MakeCommand("automatic_reconstructor", "a folder of pictures -> dense clouds, all in one",
-                  RunAutomaticReconstructor),
+                  ReconstructOrWatch),
   };
 }
 

@@ -76,10 +76,27 @@ PictureLines LinesOf(const ColmapDatabase& database) {
   return lines;
 }
 
+struct MadeOf {
+  PictureLines pictures;
+  size_t num_begun = 0;  // pictures when it was last mapped anew, not added to
+};
+
+void to_json(nlohmann::ordered_json& json, const MadeOf& made_of) {
+  json = {{"pictures", made_of.pictures}, {"num_begun", made_of.num_begun}};
+}
+
+void from_json(const nlohmann::ordered_json& json, MadeOf& made_of) {
+  made_of = {json.at("pictures").get<PictureLines>(), json.at("num_begun").get<size_t>()};
+}
+
 // Beside the mapper's own record, which is forgotten as soon as it has to be done again.
 Stage ModelStage(const MappingPlan& plan) {
   return {"model_to_continue", kMapperVersion, PlanText(plan), ""};
 }
+
+// A model may grow by one picture at a time: what three pictures told of the lens is held up to the
+// twelfth, what twelve told up to the 48th.
+constexpr size_t kMaxGrowth = 4;
 
 // Whether the cameras of all matched pictures are the model's, and at least half of the pictures
 // too: what a few pictures told of the lens is not to be held for many.
@@ -97,15 +114,17 @@ bool CanTakeIn(const fs::path& model_path, const std::vector<std::string>& pictu
 // The model that an earlier run made of some of these pictures, as they are now and in the same
 // way, where it is one alone.
 std::optional<fs::path> ModelToContinue(const MappingPlan& plan, const ColmapDatabase& database,
-                                        const WorkspaceState& state,
+                                        const std::optional<MadeOf>& made_of,
                                         const std::vector<fs::path>& models) {
-  if (models.size() != 1 || plan.job.lens == LensRule::kLeaveToMapper) return std::nullopt;
-  const auto made_of = ResultIfDone<PictureLines>(state, ModelStage(plan));
-  if (!made_of) return std::nullopt;
-  const PictureLines lines = LinesOf(database);
-  if (!std::includes(lines.begin(), lines.end(), made_of->begin(), made_of->end())) {
+  if (models.size() != 1 || plan.job.lens == LensRule::kLeaveToMapper || !made_of) {
     return std::nullopt;
   }
+  const PictureLines lines = LinesOf(database);
+  if (!std::includes(lines.begin(), lines.end(), made_of->pictures.begin(),
+                     made_of->pictures.end())) {
+    return std::nullopt;
+  }
+  if (plan.job.pictures.size() > kMaxGrowth * made_of->num_begun) return std::nullopt;
   if (!CanTakeIn(models.front(), plan.job.pictures, database)) return std::nullopt;
   return models.front();
 }
@@ -233,8 +252,9 @@ Mapping MapPictures(MappingPlan plan, const ColmapDatabase& database, WorkspaceS
   using Seconds = std::vector<RunReport::Stage>;
   const auto work = [&]() -> StageOutput<Seconds> {
     RefuseForeignModels(plan.sparse, *state->Folder());
+    const auto made_of = ResultIfDone<MadeOf>(*state, ModelStage(plan));
     plan.job.continued_model =
-        ModelToContinue(plan, database, *state, OurModels(plan.sparse, *state->Folder()));
+        ModelToContinue(plan, database, made_of, OurModels(plan.sparse, *state->Folder()));
     RunReport report;
     {
       StageTimer timer(&report, "mapper");
@@ -245,7 +265,9 @@ Mapping MapPictures(MappingPlan plan, const ColmapDatabase& database, WorkspaceS
     }
     PutModelsInPlace(plan.job.output_path, plan.sparse, state->Folder());
     const std::vector<fs::path> models = OurModels(plan.sparse, *state->Folder());
-    FinishStage(ModelStage(plan), LinesOf(database), models, state);
+    const size_t num_begun =
+        plan.job.continued_model ? made_of->num_begun : plan.job.pictures.size();
+    FinishStage(ModelStage(plan), MadeOf{LinesOf(database), num_begun}, models, state);
     return {report.stages, models};
   };
   const Seconds seconds = RunStage<Seconds>(state, stage, work);

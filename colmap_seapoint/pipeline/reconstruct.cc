@@ -36,6 +36,7 @@
 #include "colmap_seapoint/pipeline/page/job_page.h"
 #include "colmap_seapoint/pipeline/scale_models.h"
 #include "colmap_seapoint/report/reconstruction_summary.h"
+#include "colmap_seapoint/system/battery.h"
 #include "colmap_seapoint/workspace/workspace_database.h"
 #include "feature/match_features.h"
 
@@ -339,6 +340,7 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& giv
   given.Check();
   const Options options = WithRigsCameras(given);
   if (options.estimate_only) return EstimateJob(options);
+  const BatteryGuard battery(options.pause_on_battery);
   Workspace workspace(options.image_path, options.workspace_path);
   MappingPlan plan = PlanMapping(options, workspace);
   WorkspaceState state(workspace.root, workspace.Names());

@@ -1,6 +1,7 @@
 #include "colmap_seapoint/pipeline/reconstruct_options.h"
 
 #include <filesystem>
+#include <system_error>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/georeference/scale_measurements.h"
@@ -44,6 +45,7 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
   table->Add("estimate_only", &estimate_only,
              "say what the job will take in time, disk and memory, as JSON, and do nothing",
              "ours");
+  BindField(table);
   table->Add("map", &makes_map,
              "make relief and orthomosaic of every model, in map/; 0 = none, and those of earlier "
              "runs are removed",
@@ -67,6 +69,22 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
   table->MarkOutput("workspace_path");
 }
 
+// On a boat: a battery, pictures that are still coming.
+void AutomaticReconstructorOptions::BindField(OptionTable* table) {
+  table->Add("pause_on_battery", &pause_on_battery,
+             "work pauses while the battery is discharged and holds so many per cent or less, and "
+             "goes on when the machine has power again; 0 = never",
+             "ours", 0, 100);
+  table->Add("watch", &watch,
+             "take in pictures as they come into --image_path, say when their overlap drops, and "
+             "keep map and page up to date; Ctrl-C: no more will come, make the whole of it",
+             "ours");
+  table->Add("watch_idle", &watch_idle,
+             "with --watch: seconds without a new picture after which no more are expected; 0 = "
+             "until Ctrl-C",
+             "ours", 0, 1e6);
+}
+
 void AutomaticReconstructorOptions::Preset() {
   reader.Preset();
   if (quality != "archive") return;
@@ -82,6 +100,18 @@ ForeignOptions AutomaticReconstructorOptions::Foreign() {
           &mapper};
 }
 
+namespace {
+
+// What a watch makes would come in as pictures.
+bool IsBelow(const std::string& path, const std::string& folder) {
+  std::error_code ignored;
+  const auto relative = std::filesystem::weakly_canonical(path, ignored)
+                            .lexically_relative(std::filesystem::weakly_canonical(folder, ignored));
+  return !relative.empty() && *relative.begin() != "..";
+}
+
+}  // namespace
+
 void AutomaticReconstructorOptions::Check() const {
   CheckOutputPaths(*this);
   for (const std::string& problem :
@@ -92,6 +122,13 @@ void AutomaticReconstructorOptions::Check() const {
   if (!map_problem.empty()) throw UsageError("--Orthomosaic." + map_problem);
   if (!std::filesystem::exists(image_path)) {
     throw Error(image_path, "there is no such folder or video", "check --image_path");
+  }
+  if (watch && !std::filesystem::is_directory(image_path)) {
+    throw UsageError("--watch: " + image_path + " is no folder that pictures could come into");
+  }
+  if (watch && IsBelow(workspace_path, image_path)) {
+    throw UsageError("--watch: --workspace_path " + workspace_path +
+                     " lies in the folder that is watched; choose one beside it");
   }
   CheckRigFolders(rig, image_path);
   CheckScaleTables(scale);

@@ -32,6 +32,9 @@ struct AutomaticReconstructorOptions {
   bool join_models = true;
   bool check_disk = true;
   bool estimate_only = false;
+  bool watch = false;
+  double pause_on_battery = 0;  // percent; 0 = never
+  double watch_idle = 0;        // seconds; 0 = until Ctrl-C
   std::string rig;
   ScaleSources scale;
   FrameSelectionOptions frames;
@@ -54,6 +57,9 @@ struct AutomaticReconstructorOptions {
   // for paths that are not there.
   void Check() const;
   ForeignOptions Foreign();
+
+ private:
+  void BindField(OptionTable* table);
 };
 
 // Whether the user says what of the lens the mapper is to refine.

@@ -12,8 +12,10 @@ import sys
 
 import deadline as deadlines
 import dives
+import load
 
-# Of a coarse step, on Debian 12 with two cores of 2.3 GHz: to begin with, and of each picture.
+# Of a coarse step, on Debian 12 with two cores of 2.3 GHz that nobody else uses: to begin with, and
+# of each picture.
 COARSE_SECONDS = 4.0
 COARSE_SECONDS_OF_PICTURE = 0.2
 MAX_HISTORY = 20  # steps of missions on this machine
@@ -29,11 +31,12 @@ def read_history():
     return [one for one in known if isinstance(one, (int, float))] if isinstance(known, list) else []
 
 
-def remember_coarse(seconds, pictures):
-    """How long a coarse step took on this machine; a convenience, done without where it fails."""
+def remember_coarse(seconds, pictures, share):
+    """How long a coarse step took on this machine, of which that share was to be had (load.py); a
+    convenience, done without where it fails."""
     if pictures < 1:
         return
-    seconds_each = max(0.0, seconds - COARSE_SECONDS) / pictures
+    seconds_each = max(0.0, seconds * share - COARSE_SECONDS) / pictures
     try:
         dives.write_whole(history_path(),
                           json.dumps((read_history() + [round(seconds_each, 4)])[-MAX_HISTORY:]))
@@ -69,7 +72,8 @@ def estimate(mission, dive, binary, quality):
 
 
 def seconds_of(step, estimated):
-    """Of a step, by the estimate of its dive; 0 for a dive that cannot be read."""
+    """Of a step, by the estimate of its dive, where nobody else uses the machine; 0 for a dive that
+    cannot be read."""
     if not estimated:
         return 0.0
     if step == "full":
@@ -102,6 +106,7 @@ def tell(mission, binary, quality, deadline):
     sums, disk = {"coarse": 0.0, "full": 0.0}, 0
     program = dives.checksum(binary)
     names = dives.dives(mission)
+    share = load.share_to_be_had() if deadline != "never" else 1.0
     for dive in names:
         estimated = estimate(mission, dive, binary, quality)
         dive_digest = dives.digest(mission, dive)
@@ -111,13 +116,15 @@ def tell(mission, binary, quality, deadline):
         disk += (estimated or {}).get("disk_bytes", 0)
         coarse = dives.outcome(mission, dive, "coarse")
         if deadline != "never" and not dives.is_current(coarse, dive_digest, "coarse", program):
-            sums["coarse"] += seconds_of("coarse", estimated)
+            sums["coarse"] += seconds_of("coarse", estimated) / share
     free = os.statvfs(mission)
     text = f"{len(names)} dives; about {duration(sums['full'])} in full"
     if deadline != "never":
         left = max(0.0, deadlines.seconds_left(deadline))
         text += (f", after {duration(sums['coarse'])} for a coarse answer of each; "
                  f"{duration(left)} until {deadlines.clock(deadline)}")
+        if share < 0.9:
+            text += f"; others leave {100 * share:.0f} % of this machine"
         if sum(sums.values()) > left:
             text += ": some will stay coarse"
     dives.say(mission, f"{text}; disk: up to {disk / 1e9:.1f} GB of "

@@ -13,6 +13,7 @@ import time
 
 import deadline as deadlines
 import dives
+import load
 import plan
 import reduced_pictures
 
@@ -105,6 +106,7 @@ def run(step, mission, dive, binary, quality, dive_digest, deadline):
               "seconds": None, "ended": 0, "error": "not begun by the deadline"}
     if deadlines.seconds_left(deadline) > 0:
         dives.say(mission, f"{dive}: {step} begun")
+        share = load.share_to_be_had() if step == "coarse" else 1.0
         began = time.time()
         record["exit_code"], record["error"] = run_program(
             step, mission, dive, binary, quality, dive_digest, deadline)
@@ -117,7 +119,7 @@ def run(step, mission, dive, binary, quality, dive_digest, deadline):
         if step == "coarse":
             known = plan.estimate(mission, dive, binary, quality) or {}
             plan.remember_coarse(record["seconds"] - known.get("intake_seconds", 0),
-                                 known.get("pictures", 0))
+                                 known.get("pictures", 0), share)
         else:
             shutil.rmtree(dives.result_path(mission, dive, "coarse"), ignore_errors=True)
     dives.write_page(mission)

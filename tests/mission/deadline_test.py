@@ -6,12 +6,13 @@ import sys
 import tempfile
 import time
 import unittest
+import unittest.mock
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(sys.argv.pop(1), "scripts", "mission"))
-deadline, dives, plan, reduced, run_step = (
+deadline, dives, load, plan, reduced, run_step = (
     importlib.import_module(name)
-    for name in ("deadline", "dives", "plan", "reduced_pictures", "run_step"))
+    for name in ("deadline", "dives", "load", "plan", "reduced_pictures", "run_step"))
 
 # Takes as many seconds as the dive has pictures; in full it does not end by itself.
 PROGRAM = """#!/bin/sh
@@ -54,6 +55,20 @@ class Mission(unittest.TestCase):
         with open(self.binary, "w", encoding="utf-8") as file:
             file.write(PROGRAM)
         os.chmod(self.binary, 0o755)
+
+    def test_others_work_makes_coarse_answers_slower(self):
+        self.assertTrue(0.02 <= load.share_to_be_had() <= 1)
+        self.add("dive", 20)
+        told = {}
+        for share in (1.0, 0.25):
+            with unittest.mock.patch.object(load, "share_to_be_had", return_value=share):
+                plan.tell(self.mission, self.binary, "field", deadline.after_hours("1"))
+            told[share] = dives.read_json(
+                os.path.join(self.mission, "results", "estimate.json"))["coarse_seconds"]
+        self.assertAlmostEqual(told[0.25], 4 * told[1.0], delta=0.2)
+        # What a step took then is remembered as what it takes of a whole machine.
+        plan.remember_coarse(4 * told[1.0], 20, 0.25)
+        self.assertAlmostEqual(plan.read_history()[-1], plan.COARSE_SECONDS_OF_PICTURE, delta=0.01)
 
     def add(self, dive, count):
         os.makedirs(os.path.join(self.mission, dive))

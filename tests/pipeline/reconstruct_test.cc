@@ -114,6 +114,23 @@ TEST_F(Reconstruct, AFewPicturesAreNotWhatManyAreAddedTo) {
   EXPECT_EQ(ReadSparseModel(Root() / "sparse/0").images.size(), 9u);
 }
 
+// What four pictures told of the lens is not held for seventeen, by however many steps they came.
+TEST_F(Reconstruct, AModelThatHasGrownFourfoldIsMappedAnew) {
+  const FakeColmapMode continues("continues");
+  AutomaticReconstructorOptions options = ReconstructorOptions();
+  options.report_completeness = options.makes_map = false;
+  RunAutomaticReconstructor(options);
+  for (const int count : {8, 16}) {
+    WritePictures(count);
+    const std::string log = LogOf([&] { RunAutomaticReconstructor(options); });
+    EXPECT_NE(log.find("pictures added to"), std::string::npos) << log;
+  }
+  WritePictures(17);
+  const std::string log = LogOf([&] { RunAutomaticReconstructor(options); });
+  EXPECT_EQ(log.find("pictures added to"), std::string::npos) << log;
+  EXPECT_EQ(ReadSparseModel(Root() / "sparse/0").images.size(), 17u);
+}
+
 TEST_F(Reconstruct, TheMatcherIsChosenByTheNumberOfPicturesOrTheUser) {
   AutomaticReconstructorOptions options = ReconstructorOptions();
   options.matcher = "sequential";

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <vector>
 
+#include "colmap_seapoint/base/hold/work_pause.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/system/system_error.h"
 
@@ -41,9 +42,21 @@ double ChildOutput::SecondsSince(Clock::time_point start) const {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+// What the pause took counts neither as silence nor as the child's time.
+void ChildOutput::PauseIfAsked() {
+  if (!IsWorkPaused()) return;
+  const auto begin = Clock::now();
+  options_.stop(true);
+  WaitWhilePaused();
+  options_.stop(false);
+  start_ += Clock::now() - begin;
+  last_output_ += Clock::now() - begin;
+}
+
 // Until there is something to read.
 void ChildOutput::WaitFor(int pipe) {
   while (true) {
+    PauseIfAsked();
     const double silent = SecondsSince(last_output_), all = SecondsSince(start_);
     if (options_.timeout_seconds > 0 && all >= options_.timeout_seconds) {
       const std::string log = options_.log_path.empty()
@@ -64,7 +77,7 @@ void ChildOutput::WaitFor(int pipe) {
       wait_seconds = std::min(wait_seconds, options_.timeout_seconds - all);
     }
     pollfd poll_pipe = {pipe, POLLIN, 0};
-    const int wait_ms = static_cast<int>(std::ceil(std::clamp(wait_seconds, 0.0, 1e6) * 1000));
+    const int wait_ms = static_cast<int>(std::ceil(std::clamp(wait_seconds, 0.0, 1.0) * 1000));
     if (poll(&poll_pipe, 1, wait_ms) > 0) break;
   }
   last_output_ = Clock::now();

@@ -14,7 +14,9 @@ struct ChildOutputOptions {
   std::filesystem::path program;   // errors and words about silence name it
   std::filesystem::path log_path;  // truncated first; empty = nowhere
   std::function<void(const std::string&)> on_line;
-  double timeout_seconds = 0;  // since the start; 0 = none
+  double timeout_seconds = 0;  // since the start, pauses apart; 0 = none
+  // Stops the child for a pause of all work (base/hold/work_pause.h), and lets it go on.
+  std::function<void(bool)> stop = [](bool) {};
   // Silent for so long, a line says so; then again after twice as long, and so on.
   double silence_seconds = 60;
 };
@@ -38,6 +40,7 @@ class ChildOutput {
   using Clock = std::chrono::steady_clock;
 
   void WaitFor(int pipe);
+  void PauseIfAsked();
   void Log(const char* data, size_t size);
   void WriteLog(const char* data, size_t size);
   void Split(const char* data, size_t size);
@@ -47,7 +50,7 @@ class ChildOutput {
   int log_ = -1;
   uint64_t log_bytes_ = 0;
   std::string line_;
-  const Clock::time_point start_ = Clock::now();
+  Clock::time_point start_ = Clock::now();
   Clock::time_point last_output_ = start_;
   double next_silence_seconds_;
 };

@@ -171,7 +171,10 @@ SubprocessResult RunSubprocess(const std::filesystem::path& program,
                                const std::function<void(const std::string&)>& on_line,
                                double timeout_seconds) {
   LaunchPlan plan = MakePlan(program, arguments);
-  ChildOutput output({program, log_path, on_line, timeout_seconds});
+  ChildOutputOptions of_output = {program, log_path, on_line, timeout_seconds};
+  pid_t guard = 0;
+  of_output.stop = [&guard](bool is_stopped) { kill(-guard, is_stopped ? SIGSTOP : SIGCONT); };
+  ChildOutput output(of_output);
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw SystemError(program, "no pipe to it", errno);
   const FileDescriptor read_end(ends[0]);
@@ -179,7 +182,7 @@ SubprocessResult RunSubprocess(const std::filesystem::path& program,
   const FileDescriptor null_input(open("/dev/null", O_RDONLY | O_CLOEXEC));
   plan.output = write_end.Get();
   plan.null_input = null_input.Get();
-  const pid_t guard = StartGuard(plan);
+  guard = StartGuard(plan);
   write_end.Close();
   try {
     output.CopyFrom(read_end.Get());

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <thread>
 
+#include "colmap_seapoint/base/hold/work_pause.h"
 #include "tests/expect_error.h"
 #include "tests/io/test_files.h"
 
@@ -103,6 +104,26 @@ TEST(ChildOutput, TheTimeIsOverForWhoTalksAndForWhoDoesNot) {
     EXPECT_ERROR(ChildOutput(options).CopyFrom(printer.Pipe()), "has not ended within 0.1 s");
     EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(350));
   }
+}
+
+// A pause of all work stops the child, and is neither its time nor its silence.
+TEST(ChildOutput, APauseIsNotTheChildsTime) {
+  ChildOutputOptions options;
+  options.program = "/usr/bin/colmap";
+  options.timeout_seconds = 2;
+  options.silence_seconds = 2;
+  std::vector<bool> stops;
+  options.stop = [&](bool is_stopped) { stops.push_back(is_stopped); };
+  SetWorkPaused(true);
+  const Printer printer([](int pipe) {
+    Sleep(2500);
+    SetWorkPaused(false);
+    Say(pipe, "a\n");
+  });
+  testing::internal::CaptureStderr();
+  ChildOutput(options).CopyFrom(printer.Pipe());
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(stops, (std::vector<bool>{true, false}));
 }
 
 TEST(ChildOutput, ALogThatCannotBeWritten) {
