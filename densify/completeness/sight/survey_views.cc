@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kRangeShare = 0.98, kRangeMargin = 1.25;
 constexpr double kHalfPi = 1.57079632679489662;
+constexpr double kAngleMargin = 1.02;
 // A disc about a cell reaches its corners.
 constexpr double kDiscRadius = 0.75;
 constexpr double kMaxCode = 65535;
@@ -109,9 +110,9 @@ DepthCells DrawView(const Ground& ground, const std::vector<CoherentTile>& tiles
 std::optional<Eigen::Vector2d> SurveyView::Project(const Eigen::Vector3d& place) const {
   const Eigen::Vector3d in_cam = rotation * place + translation;
   if (in_cam.z() <= 0 || in_cam.squaredNorm() > max_range * max_range) return std::nullopt;
-  // Beyond the corners a distortion may fold back into the picture.
-  const double aside = std::hypot(in_cam.x(), in_cam.y());
-  if (std::atan2(aside, in_cam.z()) > max_angle * 1.02) return std::nullopt;
+  if (in_cam.head<2>().squaredNorm() > max_tangent_squared * in_cam.z() * in_cam.z()) {
+    return std::nullopt;
+  }
   const auto pixel = camera->ImgFromCam(in_cam);
   if (!pixel || !camera->InImage(*pixel)) return std::nullopt;
   return pixel;
@@ -140,6 +141,9 @@ SurveyView MakeView(const Camera& camera, const Rigid3d& cam_from_world, double 
   view.center = cam_from_world.OriginInSource();
   view.is_fisheye = IsFisheye(camera.model) || camera.model == CameraModel::kEquirectangular;
   view.max_angle = MaxAngle(camera);
+  const double limit = kAngleMargin * view.max_angle;
+  view.max_tangent_squared =
+      limit < kHalfPi ? std::pow(std::tan(limit), 2) : std::numeric_limits<double>::infinity();
   view.max_range = max_range;
   return view;
 }

@@ -17,6 +17,9 @@ struct SurveyView {
   Eigen::Vector3d translation, center;
   bool is_fisheye = false;
   double max_angle = 0;  // radians from the axis to the farthest corner
+  // Tangent of a little more than that, squared: beyond the corners a distortion may fold back into
+  // the picture. Infinite from a right angle on.
+  double max_tangent_squared = 0;
   double max_range = 0;  // units; what is farther is lost in the water
 
   // The pixel of a place in the world; nullopt outside of the picture, and beyond max_range.
