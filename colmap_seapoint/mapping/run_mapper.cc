@@ -9,6 +9,7 @@
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/mapping/add_pictures.h"
 #include "colmap_seapoint/mapping/adjust_lens.h"
 #include "colmap_seapoint/mapping/join_rounds.h"
@@ -193,8 +194,11 @@ class MapperRounds {
 
   // Pictures that nothing ties to the model are the next round's.
   static Trial ModelAsItIs(Trial trial, const fs::path& output) {
-    const SparseModel model = ReadSparseModel(trial.continued_model);
-    WriteSparseModelBinary(output, model);
+    for (const std::string& name : ModelFileNames()) {
+      const fs::path file = trial.continued_model / name;
+      if (fs::exists(file)) CopyFileAtomically(file, output / name);
+    }
+    const SparseModel model = ReadSparseModel(output, ModelContent::kPosesAndPoints);
     for (const PosedImage& image : model.images) trial.pictures.insert(image.name);
     trial.models.push_back(output);
     trial.lenses.emplace_back("nothing ties the new pictures to the " +

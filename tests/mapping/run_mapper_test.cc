@@ -174,7 +174,7 @@ TEST_F(RunMapperTest, AModelThatNothingIsTiedToStaysAsItIs) {
   EXPECT_EQ(colmap_.Value(kMapper, 1, "input_path"), "");
   EXPECT_EQ(colmap_.ImageList(kMapper, 1), "img10.jpg\nimg7.jpg\nimg8.jpg\nimg9.jpg\n");
   EXPECT_EQ(NumModels(), 2u);
-  for (const std::string& file : {"images.bin", "points3D.bin"}) {
+  for (const std::string file : {"images.bin", "points3D.bin"}) {
     EXPECT_TRUE(ReadBytes(job_.output_path / "0" / file) == ReadBytes(dir_ / "before" / file));
   }
   EXPECT_EQ(NamesIn("1").size(), 4u);

@@ -77,14 +77,14 @@ TEST_F(GapChanges, ClosedSmallerAndAsBefore) {
 
 // Two gaps that have become one are one id, and neither is closed.
 TEST_F(GapChanges, JoinedIsNotClosed) {
-  const Place left(2.4, 4), right(4, 4);
+  const Place left(0.8, 4), right(5.6, 4);  // too far apart for one pass
   const CompletenessResult before =
       Assess([&](const Place& p) { return !IsIn(p, left, 0.7) && !IsIn(p, right, 0.6); });
   const int id_left = IdAt(before, left), id_right = IdAt(before, right);
   ASSERT_TRUE(id_left > 0 && id_right > 0 && id_left != id_right);
   Remember(before);
   const CompletenessResult after = Assess(
-      [](const Place& p) { return !(p.x() > 1.7 && p.x() < 4.6 && p.y() > 3.2 && p.y() < 4.8); });
+      [](const Place& p) { return !(p.x() > 0 && p.x() < 6.3 && p.y() > 3.2 && p.y() < 4.8); });
   EXPECT_EQ(Of(after, id_left).fate, GapFate::kLarger);
   EXPECT_EQ(Of(after, id_right).fate, GapFate::kJoined);
   EXPECT_EQ(Of(after, id_right).joined_to, id_left);
