@@ -28,7 +28,7 @@
 namespace colmap_seapoint {
 
 // Raise it whenever the same inputs and options give another answer than before.
-inline constexpr char kCompletenessVersion[] = "2";
+inline constexpr char kCompletenessVersion[] = "3";
 
 struct ConfidentPoint {
   SurfacePoint place;
