@@ -67,6 +67,14 @@ Json CoverageJson(const CompletenessResult& result) {
   return coverage;
 }
 
+// null where nothing was checked.
+Json SelfCheckJson(const SelfCheck& check) {
+  if (check.num_folds == 0) return nullptr;
+  return {{"folds", check.num_folds},           {"hidden_area", check.hidden_area},
+          {"beyond_share", check.beyond_share}, {"found_share", check.found_share},
+          {"false_share", check.false_share},   {"area_error", check.area_error}};
+}
+
 Json MissingJson(const CompletenessResult& result) {
   Json missing = Json::object();
   for (size_t c = 1; c < result.missing_area.size(); ++c) {
@@ -99,6 +107,7 @@ std::string CompletenessJson(const CompletenessResult& result, const SparseModel
                {"unit", places.Unit()},
                {"covered_share", result.coverage[0].share},
                {"covered_share_tolerance", result.share_tolerance},
+               {"self_check", SelfCheckJson(result.self_check)},
                {"covered_area", result.coverage[0].area},
                {"expected_area", result.expected_area},
                {"gsd", result.gsd},

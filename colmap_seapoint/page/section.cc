@@ -58,6 +58,14 @@ class PlanWriter {
   double digit_;
 };
 
+// null where nothing was checked.
+Json SelfCheckJson(const SelfCheck& check) {
+  if (check.num_folds == 0) return nullptr;
+  return {{"hidden_area", check.hidden_area},
+          {"found_share", check.found_share},
+          {"area_error", check.area_error}};
+}
+
 Json FiguresJson(const SectionInput& input) {
   const CompletenessResult& result = *input.result;
   Json coverage = Json::array(), missing = Json::array();
@@ -70,6 +78,7 @@ Json FiguresJson(const SectionInput& input) {
     missing.push_back({{"cause", GapCauseName(cause)}, {"area", result.missing_area[c]}});
   }
   return {{"tolerance", result.share_tolerance},
+          {"self_check", SelfCheckJson(result.self_check)},
           {"expected_area", result.expected_area},
           {"coverage", std::move(coverage)},
           {"missing", std::move(missing)},

@@ -18,6 +18,7 @@
 #include "colmap_seapoint/gaps/gap_map.h"
 #include "colmap_seapoint/gaps/route_files.h"
 #include "colmap_seapoint/io/cloud/ply_reader.h"
+#include "colmap_seapoint/io/cloud/seen_cloud.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/io/files/model_units.h"
@@ -118,10 +119,11 @@ PictureFacts ReadFacts(const CompletenessReporterOptions& options, const Picture
 // A step a picture that is looked at, and as many each time that the cloud is read.
 class AssessmentProgress {
  public:
-  AssessmentProgress(size_t num_pictures, uint64_t num_points)
+  AssessmentProgress(size_t num_pictures, uint64_t num_points, int num_readings)
       : num_pictures_(static_cast<double>(num_pictures)),
         num_points_(static_cast<double>(num_points)),
-        progress_("Looking for what is missing, steps", static_cast<int64_t>(3 * num_pictures), 0,
+        progress_("Looking for what is missing, steps",
+                  static_cast<int64_t>(1 + num_readings) * static_cast<int64_t>(num_pictures), 0,
                   Work::kCompleteness) {}
 
   void LookedAtPictures(int64_t num) { progress_.Update(num); }
@@ -175,21 +177,46 @@ std::vector<PictureFacts> MeasurePictures(const CompletenessReporterOptions& opt
 }
 
 // Of the first reading some points are kept.
-void ReadPoints(const std::string& path, AssessmentProgress* progress,
-                const std::function<void(const ConfidentPoint&)>& take, Seen* seen) {
-  constexpr uint64_t kPointsOfUpdate = 100000;
-  CloudReader reader(path);
-  CloudVertex vertex;
-  uint64_t num_read = 0;
-  const bool is_first = seen->points.empty();
-  const PointChooser chooser(reader.NumPoints(), kPagePoints);
-  progress->BeginCloud();
-  while (reader.Next(&vertex)) {
-    take({{vertex.xyz, vertex.normal.cast<double>()}, vertex.confidence});
-    if (is_first && chooser.Takes(num_read)) seen->points.push_back({vertex.xyz, vertex.rgb});
-    if (++num_read % kPointsOfUpdate == 0) progress->ReadPoints(num_read);
+class PointReading {
+ public:
+  PointReading(uint64_t num_points, AssessmentProgress* progress, Seen* seen)
+      : chooser_(num_points, kPagePoints), progress_(progress), seen_(seen) {
+    is_first_ = seen->points.empty();
+    progress->BeginCloud();
   }
-  progress->ReadPoints(num_read);
+  void Read(const Eigen::Vector3d& xyz, const std::array<uint8_t, 3>& rgb) {
+    constexpr uint64_t kPointsOfUpdate = 100000;
+    if (is_first_ && chooser_.Takes(num_read_)) seen_->points.push_back({xyz, rgb});
+    if (++num_read_ % kPointsOfUpdate == 0) progress_->ReadPoints(num_read_);
+  }
+  void Finish() { progress_->ReadPoints(num_read_); }
+
+ private:
+  PointChooser chooser_;
+  AssessmentProgress* progress_;
+  Seen* seen_;
+  bool is_first_ = false;
+  uint64_t num_read_ = 0;
+};
+
+void ReadPoints(const CompletenessReporterOptions& options, AssessmentProgress* progress,
+                const std::function<void(const ConfidentPoint&)>& take, Seen* seen) {
+  CloudReader reader(options.cloud_path);
+  PointReading reading(reader.NumPoints(), progress, seen);
+  if (options.completeness.self_check) {
+    ReadSeenCloud(options.cloud_path, [&](const CloudPoint& p, uint32_t first, uint32_t second) {
+      const Eigen::Vector3d xyz = p.xyz.cast<double>();
+      take({{xyz, p.normal.cast<double>()}, p.confidence, {first, second}});
+      reading.Read(xyz, p.rgb);
+    });
+  } else {
+    CloudVertex vertex;
+    while (reader.Next(&vertex)) {
+      take({{vertex.xyz, vertex.normal.cast<double>()}, vertex.confidence, {}});
+      reading.Read(vertex.xyz, vertex.rgb);
+    }
+  }
+  reading.Finish();
 }
 
 void CheckResult(const CompletenessReporterOptions& options, const CompletenessResult& result) {
@@ -221,10 +248,9 @@ CompletenessResult Assess(const CompletenessReporterOptions& options, const Spar
     throw Error(options.cloud_path, "the cloud holds no points", "check --cloud_path");
   }
   report->points = static_cast<int64_t>(input.num_points);
-  AssessmentProgress progress(model.images.size(), input.num_points);
-  input.for_each_point = [&](const auto& take) {
-    ReadPoints(options.cloud_path, &progress, take, seen);
-  };
+  AssessmentProgress progress(model.images.size(), input.num_points,
+                              NumReadings(options.completeness));
+  input.for_each_point = [&](const auto& take) { ReadPoints(options, &progress, take, seen); };
   input.asked = ReadArea(options, units.value_or(ModelUnits()));
   input.frame_of = [&](const auto& sample) { return FindPlan(options, model, units, sample); };
   input.lost = LostPictures(options, model);
@@ -314,6 +340,10 @@ void CompletenessReporterOptions::Bind(OptionTable* table) {
       "folder that orthomosaic wrote, for the page's map; empty = the page has none under it",
       "ours");
   completeness.Bind(table);
+  table->Add("self_check", &completeness.self_check,
+             "hide a quarter of the pictures four times, and measure on what they showed how wrong "
+             "the missing area is said; asks for <cloud_path>.vis",
+             "ours");
   run.Bind(table);
   table->MarkOutput("output_path");
 }

@@ -5,8 +5,9 @@
 
 #include "densify/completeness/gaps/merge_gaps.h"
 #include "densify/completeness/judge_ground.h"
-#include "densify/completeness/outline.h"
-#include "densify/completeness/survey_limits.h"
+#include "densify/completeness/judge_survey.h"
+#include "densify/completeness/self_check/check_by_hiding.h"
+#include "densify/completeness/self_check/hidden_pictures.h"
 #include "densify/completeness/survey_scale.h"
 #include "densify/match/cell_grid.h"
 
@@ -18,8 +19,6 @@ constexpr size_t kNumNearest = 5;
 // into them.
 constexpr double kMinGapSpacings = 10;
 constexpr int kMinGapCells = 2;
-// Radius of the disc that closes the outline, in widths of a picture.
-constexpr double kOutlineRadius = 0.75;
 
 double StepOf(const SparseModel& model, const CompletenessOptions& options) {
   std::vector<double> steps;
@@ -27,13 +26,6 @@ double StepOf(const SparseModel& model, const CompletenessOptions& options) {
     steps.push_back(SampleStep(model.cameras.at(image.camera_id), options.step));
   }
   return MedianOf(std::move(steps));
-}
-
-void CountPoints(const CompletenessInput& input, double min_confidence, Ground* ground) {
-  input.for_each_point([&](const ConfidentPoint& point) {
-    if (point.confidence >= min_confidence) AddPoint(point.place, ground);
-  });
-  for (const auto& [id, point] : input.model->points3D) AddHint(point.xyz, ground);
 }
 
 // Area that is covered when squares of `size` cells, above 1, are asked for the points of
@@ -198,11 +190,16 @@ void JoinPasses(CompletenessResult* result) {
 
 }  // namespace
 
+int NumReadings(const CompletenessOptions& options) {
+  return 2 + (options.self_check ? kNumFolds : 0);
+}
+
 CompletenessResult AssessCompleteness(const CompletenessInput& input,
                                       const CompletenessOptions& options, int num_threads) {
   CompletenessResult result;
   const SparseModel& model = *input.model;
-  const std::vector<SurveyView> views = MakeViews(model, VisualRange(model));
+  const double max_range = VisualRange(model);
+  const std::vector<SurveyView> views = MakeViews(model, max_range);
   const std::vector<SurfacePoint> sample = SampleCloud(input);
   const SurveyScale scale = MeasureScale(views, sample, options.min_parallax_deg);
   result.belonging_share = scale.seen_share;
@@ -211,33 +208,24 @@ CompletenessResult AssessCompleteness(const CompletenessInput& input,
   const double step = StepOf(model, options);
   result.gsd = scale.gsd;
   result.spacing = options.spacing > 0 ? options.spacing : scale.gsd * step;
-  Ground& ground = result.ground;
   result.is_area_too_large = input.asked.IsTooLarge(kCellSpacings * result.spacing);
   if (result.is_area_too_large) return result;
-  ground.frame = input.frame_of ? input.frame_of(PlacesOf(sample)) : PlanFrame();
-  ground.cell_side = kCellSpacings * result.spacing;
-  CountPoints(input, options.min_confidence, &ground);
-  FinishPoints(num_threads, &ground);
-
-  const PassPlan plan = PlanLikeSurvey(views, ground, options);
-  const std::vector<DepthCells> depths = DrawDepths(ground, views, num_threads);
-  result.lost_runs = FindLostRuns(NamesOf(model), input.lost, input.posed_elsewhere);
-  const LostSight lost(result.lost_runs, views, plan.across);
-  const SightContext context{&views, &depths,          &input.facts,
-                             &lost,  ground.cell_side, options.min_parallax_deg};
-  result.records = StartRecords(context, num_threads);
-
-  const AskedArea* asked = input.asked.Empty() ? nullptr : &input.asked;
-  SpreadCells(views, &ground);
-  JudgeGround(context, {options.spacing > 0 ? 0 : step, asked}, num_threads, &ground);
-  LeaveOutBackground(result.gsd, &ground);
-  LeaveOutIslands(&ground);
-  TellWhatLacksTexture(&ground);
-  JudgeUnseen({kOutlineRadius * plan.across, kFar * result.gsd}, asked, lost, &ground);
-  FillRecords(context, ground, num_threads, &result.records);
+  const SurveySetting setting = {result.gsd, result.spacing, options.spacing > 0 ? 0 : step,
+                                 max_range,
+                                 input.frame_of ? input.frame_of(PlacesOf(sample)) : PlanFrame()};
+  JudgedSurvey judged = JudgeSurvey(input, options, setting, views, num_threads);
+  result.ground = std::move(judged.ground);
+  result.records = std::move(judged.records);
+  result.lost_runs = std::move(judged.lost_runs);
 
   Measure(&result);
-  FindGaps(input, views, plan, &result);
+  if (options.self_check) {
+    result.self_check = CheckByHiding(input, options, setting, result.ground, num_threads);
+    const double missing_share = 1 - result.coverage[0].share;
+    result.share_tolerance =
+        std::hypot(result.share_tolerance, result.self_check.area_error * missing_share);
+  }
+  FindGaps(input, views, judged.plan, &result);
   JoinPasses(&result);
   return result;
 }

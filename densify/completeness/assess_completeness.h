@@ -24,6 +24,7 @@
 #include "densify/completeness/gaps/closing_pass.h"
 #include "densify/completeness/gaps/gap_ids.h"
 #include "densify/completeness/picture_records.h"
+#include "densify/completeness/self_check/self_check.h"
 
 namespace colmap_seapoint {
 
@@ -33,6 +34,7 @@ inline constexpr char kCompletenessVersion[] = "3";
 struct ConfidentPoint {
   SurfacePoint place;
   float confidence = 1;
+  std::array<uint32_t, 2> pictures = {};  // image_idx of those it is from; for self_check alone
 };
 
 // A gap of an earlier report on the same frame.
@@ -44,7 +46,7 @@ struct FormerOutline {
 
 struct CompletenessInput {
   const SparseModel* model = nullptr;  // with points and their ids by image (ModelContent)
-  // Calls its argument for every point of the cloud, in order. Called twice.
+  // Calls its argument for every point of the cloud, in order. Called NumReadings() times.
   std::function<void(const std::function<void(const ConfidentPoint&)>&)> for_each_point;
   uint64_t num_points = 0;
   // The plan for a sample of the cloud; empty: the world's own.
@@ -85,8 +87,10 @@ struct CompletenessResult {
   double expected_area = 0;            // units^2, along the surface
   std::array<CoverageAt, 3> coverage;  // at the spacing, at 2 and at 4 times it
   // Of the share at the wanted spacing, +-: what is thin (ground.h), which another threshold would
-  // have judged otherwise. What predicted surfaces and grazing angles cost is not in it.
+  // have judged otherwise; and with self_check how wrong the area of what is missing was where the
+  // survey itself could tell. What is wrong with the cloud is not in it.
   double share_tolerance = 0;
+  SelfCheck self_check;  // num_folds 0: not asked for, or too few pictures
   std::array<double, kNumGapCauses> missing_area = {};  // by cause; all cells, also of small gaps
   double mean_views = 0, median_parallax_deg = 0;       // of covered cells
   double points_per_area = 0;                           // units^-2, of covered cells
@@ -101,7 +105,10 @@ struct CompletenessResult {
 };
 inline constexpr double kMinBelonging = 0.5;
 
-// The same for any number of threads. Memory: 24 bytes a cell of the ground, 4 a depth cell of
+// How often the cloud is read.
+int NumReadings(const CompletenessOptions& options);
+
+// The same for any number of threads. Memory: 24 bytes a cell of the ground, 2 a depth cell of
 // every picture; the cloud is streamed.
 CompletenessResult AssessCompleteness(const CompletenessInput& input,
                                       const CompletenessOptions& options, int num_threads);

@@ -11,6 +11,7 @@ struct CompletenessOptions {
   double min_confidence = 0.5;  // of a point
   double min_parallax_deg = 2;
   double forward_overlap = 0.7, side_overlap = 0.5;  // of the passes that are proposed
+  bool self_check = false;                           // check_by_hiding.h
 
   void Bind(OptionTable* table);
 };

@@ -16,9 +16,9 @@ bool IsDrawn(const DepthCells& depths, int a, int b) {
   int num_drawn = 0, num_cells = 0;
   for (int k = 0; k < 4; ++k) {
     const int x = 2 * a + k % 2, y = 2 * b + k / 2;
-    if (!depths.Contains(x, y)) continue;
+    if (!depths.codes.Contains(x, y)) continue;
     ++num_cells;
-    num_drawn += depths.At(x, y) > 0 ? 1 : 0;
+    num_drawn += depths.Holds(x, y) ? 1 : 0;
   }
   return 4 * num_drawn >= kMinDrawn * num_cells;
 }

@@ -28,6 +28,11 @@ const qualityText = ({ figures, unit }) => `A pixel covers ${lengthText(figures.
   `seen by ${digits(figures.mean_views, 2)} pictures on average, with a parallax of ${digits(figures.parallax_deg, 2)}° in the middle. ` +
   `${areaText(figures.unlisted_area, unit)} are missing in spots too small to be listed.`;
 
+const selfCheckText = ({ figures: { self_check: check }, unit }) => check === null
+  ? 'The ± of the covered share is what another threshold would have said; no picture was hidden to measure it.'
+  : `The ± of the covered share was measured: with a quarter of the pictures hidden at a time ${areaText(check.hidden_area, unit)} ` +
+    `went; ${percent(check.found_share)} of what had to be missed was, and the missing area was said ${percent(check.area_error)} wrong.`;
+
 const lostText = (run) => {
   const names = run.names.length > 4 ? `${run.names[0]} to ${run.names.at(-1)} (${run.names.length} pictures)` : run.names.join(', ');
   if (run.before && run.after) return `${names}: somewhere between ${run.before} and ${run.after}`;
@@ -69,7 +74,7 @@ const makeSection = (section) => {
     section.gaps.length > 0 && makeGaps(section, map),
     make('h3', { class: 'on-screen' }, 'In three dimensions'), makeCloud(section),
     make('h3', {}, 'The track'), makeTrack(section), lostList(section), otherLayers(section),
-    make('h3', {}, 'In figures'), coverageTable(section), missingTable(section), make('p', {}, qualityText(section)),
+    make('h3', {}, 'In figures'), coverageTable(section), missingTable(section), make('p', {}, qualityText(section)), make('p', {}, selfCheckText(section)),
     make('p', { class: 'note' }, `Coordinates: ${section.frame}.`), slate]);
   return content;
 };

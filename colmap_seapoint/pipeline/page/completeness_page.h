@@ -13,7 +13,7 @@
 namespace colmap_seapoint {
 
 // Raise it whenever the same report gives another page.
-inline constexpr char kPageVersion[] = "1";
+inline constexpr char kPageVersion[] = "2";
 
 struct CompletenessPageInput {
   const SparseModel& model;  // its cameras fit the pictures

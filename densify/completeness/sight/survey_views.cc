@@ -16,6 +16,7 @@ constexpr double kRangeShare = 0.98, kRangeMargin = 1.25;
 constexpr double kHalfPi = 1.57079632679489662;
 // A disc about a cell reaches its corners.
 constexpr double kDiscRadius = 0.75;
+constexpr double kMaxCode = 65535;
 
 double MaxAngle(const Camera& camera) {
   double max_angle = 0;
@@ -43,20 +44,64 @@ void DrawTile(const Ground& ground, const GroundLayer& layer, const TileKey& key
     if (toward.dot(view.center - place) <= 0) continue;
     const auto pixel = view.Project(place);
     if (!pixel) continue;
-    const auto depth = static_cast<float>((view.rotation * place + view.translation).z());
+    const uint16_t code = depths->CodeOf((view.rotation * place + view.translation).z());
     const double radius = kDiscRadius * ground.cell_side / view.GsdAt(place) / kDepthCell;
     const double x = pixel->x() / kDepthCell, y = pixel->y() / kDepthCell;
     const int x0 = std::max(0, static_cast<int>(x - radius));
-    const int x1 = std::min(depths->width - 1, static_cast<int>(x + radius));
+    const int x1 = std::min(depths->codes.width - 1, static_cast<int>(x + radius));
     const int y0 = std::max(0, static_cast<int>(y - radius));
-    const int y1 = std::min(depths->height - 1, static_cast<int>(y + radius));
+    const int y1 = std::min(depths->codes.height - 1, static_cast<int>(y + radius));
     for (int b = y0; b <= y1; ++b) {
-      for (int a = x0; a <= x1; ++a) {
-        float& nearest = depths->At(a, b);
-        if (nearest == 0 || depth < nearest) nearest = depth;
-      }
+      for (int a = x0; a <= x1; ++a) depths->Draw(a, b, code);
     }
   }
+}
+
+// A tile that holds a piece of the surface, in a sphere.
+struct CoherentTile {
+  const GroundLayer* layer;
+  TileKey key;
+  Eigen::Vector3d middle;
+  double radius;
+};
+
+std::vector<CoherentTile> CoherentTiles(const Ground& ground) {
+  constexpr int kSide = TiledGrid<GroundCell>::kSide;
+  std::vector<CoherentTile> tiles;
+  for (const auto& [layer_key, layer] : ground.layers) {
+    for (const TileKey& key : layer.cells.Keys()) {
+      float low = std::numeric_limits<float>::infinity(), high = -low;
+      for (const GroundCell& cell : layer.cells.ExistingTile(key)) {
+        if (!cell.is_coherent) continue;
+        low = std::min(low, cell.height);
+        high = std::max(high, cell.height);
+      }
+      if (low > high) continue;
+      const Eigen::Vector3d middle = ground.PlaceOf(layer, key.x * kSide + kSide / 2,
+                                                    key.y * kSide + kSide / 2, 0.5 * (low + high));
+      tiles.push_back(
+          {&layer, key, middle, std::hypot(0.75 * kSide * ground.cell_side, 0.5 * (high - low))});
+    }
+  }
+  return tiles;
+}
+
+DepthCells DrawView(const Ground& ground, const std::vector<CoherentTile>& tiles,
+                    const SurveyView& view) {
+  std::vector<const CoherentTile*> in_view;
+  double farthest = 0;
+  for (const CoherentTile& tile : tiles) {
+    if (!view.MaySee(tile.middle, tile.radius)) continue;
+    in_view.push_back(&tile);
+    farthest = std::max(farthest,
+                        view.rotation.row(2).dot(tile.middle) + view.translation.z() + tile.radius);
+  }
+  DepthCells depths((view.camera->width + kDepthCell - 1) / kDepthCell,
+                    (view.camera->height + kDepthCell - 1) / kDepthCell, farthest);
+  for (const CoherentTile* tile : in_view) {
+    DrawTile(ground, *tile->layer, tile->key, view, &depths);
+  }
+  return depths;
 }
 
 }  // namespace
@@ -121,51 +166,28 @@ double VisualRange(const SparseModel& model) {
   return kRangeMargin * Quantile(std::move(ranges), kRangeShare);
 }
 
+DepthCells::DepthCells(int width, int height, double farthest)
+    : codes(width, height), unit(farthest / kMaxCode) {}
+
+uint16_t DepthCells::CodeOf(double depth) const {
+  return static_cast<uint16_t>(std::clamp(std::round(depth / unit), 1.0, kMaxCode));
+}
+
 std::vector<DepthCells> DrawDepths(const Ground& ground, const std::vector<SurveyView>& views,
                                    int num_threads) {
-  struct Place {
-    const GroundLayer* layer;
-    TileKey key;
-    Eigen::Vector3d middle;
-    double radius;
-  };
-  constexpr int kSide = TiledGrid<GroundCell>::kSide;
-  std::vector<Place> places;
-  for (const auto& [layer_key, layer] : ground.layers) {
-    for (const TileKey& key : layer.cells.Keys()) {
-      float low = std::numeric_limits<float>::infinity(), high = -low;
-      for (const GroundCell& cell : layer.cells.ExistingTile(key)) {
-        if (!cell.is_coherent) continue;
-        low = std::min(low, cell.height);
-        high = std::max(high, cell.height);
-      }
-      if (low > high) continue;
-      const Eigen::Vector3d middle = ground.PlaceOf(layer, key.x * kSide + kSide / 2,
-                                                    key.y * kSide + kSide / 2, 0.5 * (low + high));
-      places.push_back(
-          {&layer, key, middle, std::hypot(0.75 * kSide * ground.cell_side, 0.5 * (high - low))});
-    }
-  }
+  const std::vector<CoherentTile> tiles = CoherentTiles(ground);
   std::vector<DepthCells> depths(views.size());
   ParallelFor(num_threads, static_cast<int64_t>(views.size()), [&](int64_t i) {
-    const SurveyView& view = views[static_cast<size_t>(i)];
-    DepthCells& of_view = depths[static_cast<size_t>(i)];
-    of_view = DepthCells((view.camera->width + kDepthCell - 1) / kDepthCell,
-                         (view.camera->height + kDepthCell - 1) / kDepthCell);
-    for (const Place& place : places) {
-      if (!view.MaySee(place.middle, place.radius)) continue;
-      DrawTile(ground, *place.layer, place.key, view, &of_view);
-    }
+    depths[static_cast<size_t>(i)] = DrawView(ground, tiles, views[static_cast<size_t>(i)]);
   });
   return depths;
 }
 
 bool ShowsAnother(const DepthCells& depths, const Eigen::Vector2d& pixel, double depth,
                   double slack) {
-  const int x = std::clamp(static_cast<int>(pixel.x()) / kDepthCell, 0, depths.width - 1);
-  const int y = std::clamp(static_cast<int>(pixel.y()) / kDepthCell, 0, depths.height - 1);
-  const float nearest = depths.At(x, y);
-  return nearest > 0 && std::abs(nearest - depth) > slack;
+  const int x = std::clamp(static_cast<int>(pixel.x()) / kDepthCell, 0, depths.codes.width - 1);
+  const int y = std::clamp(static_cast<int>(pixel.y()) / kDepthCell, 0, depths.codes.height - 1);
+  return depths.Holds(x, y) && std::abs(depths.DepthAt(x, y) - depth) > slack;
 }
 
 }  // namespace colmap_seapoint

@@ -1,6 +1,8 @@
 #include "tests/densify/completeness/flat_survey.h"
 
+#include <algorithm>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace colmap_seapoint {
@@ -20,6 +22,17 @@ std::vector<Eigen::Vector3d> Lattice(const SparseModel& model, double step) {
     for (double x = low.x() - 7; x < high.x() + 7; x += step) places.emplace_back(x, y, 0);
   }
   return places;
+}
+
+// The two pictures right above a place, or nearly.
+std::array<uint32_t, 2> NearestPictures(const SparseModel& model, const Eigen::Vector3d& place) {
+  std::vector<std::pair<double, uint32_t>> order;
+  for (uint32_t i = 0; i < model.images.size(); ++i) {
+    const Eigen::Vector3d center = model.images[i].cam_from_world.OriginInSource();
+    order.emplace_back((center - place).squaredNorm(), i);
+  }
+  std::partial_sort(order.begin(), order.begin() + 2, order.end());
+  return {order[0].second, order[1].second};
 }
 
 }  // namespace
@@ -83,7 +96,7 @@ CompletenessInput FlatInput(const SparseModel& model, const KeepPoint& keep) {
   auto points = std::make_shared<std::vector<ConfidentPoint>>();
   for (const Eigen::Vector3d& place : Lattice(model, kFlatGsd)) {
     if (keep(place.head<2>()) && TimesSeen(model, place) >= 2) {
-      points->push_back({{place, Eigen::Vector3d::UnitZ()}, 1});
+      points->push_back({{place, Eigen::Vector3d::UnitZ()}, 1, NearestPictures(model, place)});
     }
   }
   CompletenessInput input;

@@ -101,8 +101,11 @@ TEST(FindLostRuns, ATrackThatGoesOnInAnotherModelIsNoPlace) {
 }
 
 TEST(ShowsAnother, BeforeOrBehindThePlace) {
-  DepthCells depths(4, 3);
-  depths.At(1, 1) = 5;
+  DepthCells depths(4, 3, 20);
+  depths.Draw(1, 1, depths.CodeOf(9));
+  depths.Draw(1, 1, depths.CodeOf(5));  // the nearer one stays
+  depths.Draw(1, 1, depths.CodeOf(7));
+  EXPECT_NEAR(depths.DepthAt(1, 1), 5, 20.0 / 65535);
   const Eigen::Vector2d there(1.5 * kDepthCell, 1.5 * kDepthCell);
   EXPECT_FALSE(ShowsAnother(depths, {1, 1}, 5, 0.1));  // nothing is drawn there
   EXPECT_FALSE(ShowsAnother(depths, there, 5.05, 0.1));
