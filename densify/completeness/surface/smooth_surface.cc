@@ -6,7 +6,7 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr int kReach = 2;
-constexpr double kMinAgreeing = 2.5;
+constexpr double kMinAgreeing = 3;
 constexpr double kStep = 0.5;  // cells' sides
 
 int NumAgreeing(const GroundLayer& layer, int x, int y, double cell_side) {
