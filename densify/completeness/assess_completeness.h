@@ -28,7 +28,7 @@
 namespace colmap_seapoint {
 
 // Raise it whenever the same inputs and options give another answer than before.
-inline constexpr char kCompletenessVersion[] = "4";
+inline constexpr char kCompletenessVersion[] = "5";
 
 struct ConfidentPoint {
   SurfacePoint place;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "colmap_seapoint/base/parallel.h"
+#include "densify/completeness/surface/smooth_surface.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -17,10 +18,6 @@ constexpr int kHoleReach = 24, kHoleDepth = 12;
 constexpr double kDenseTile = 0.25;
 constexpr double kFewPoints = 5;
 constexpr int kMaxReach = 4;  // cells
-// What blurred pictures alone have measured counts where so many of the 8 cells around are within
-// that many cells' sides in height.
-constexpr int kMinSmooth = 4;
-constexpr double kSmoothStep = 0.5;
 
 struct Box {
   Eigen::Vector2d low, high;
@@ -148,17 +145,6 @@ class TileJudge {
     }
     return candidates;
   }
-  // Whether most neighbours lie at the same height, to what a spacing is worth.
-  bool IsSmooth(int x, int y, const GroundCell& cell) const {
-    int num_agreeing = 0;
-    for (int k = 0; k < 9; ++k) {
-      const GroundCell* next = layer_->cells.Find(x + k % 3 - 1, y + k / 3 - 1);
-      if (k == 4 || next == nullptr || !next->is_coherent) continue;
-      const double step = std::abs(next->height - cell.height);
-      num_agreeing += step <= kSmoothStep * ground_.cell_side ? 1 : 0;
-    }
-    return num_agreeing >= kMinSmooth;
-  }
   bool HasBad(const std::vector<int>& candidates) const {
     return std::any_of(candidates.begin(), candidates.end(),
                        [&](int i) { return (*context_.facts)[static_cast<size_t>(i)].is_bad; });
@@ -172,7 +158,7 @@ class TileJudge {
   }
   void Note(const std::vector<Sight>& sights, GroundCell* cell) const {
     cell->has_pair = IsSeenFromTwoSides(sights, context_.min_parallax_deg);
-    cell->gsd = static_cast<float>(NearestGsd(sights));
+    cell->gsd = static_cast<float>(LevelGsd(sights, layer_->layer_from_world.row(2).transpose()));
     cell->texture = MedianTexture(sights);
     cell->num_views = static_cast<uint8_t>(std::min(255, NumGood(sights)));
     cell->parallax_deg = static_cast<uint8_t>(std::lround(ParallaxDeg(sights)));
@@ -180,7 +166,8 @@ class TileJudge {
   // What other layers look at must not change while they do.
   void JudgeCovered(const std::vector<Sight>& sights, int x, int y, GroundCell* cell) const {
     if (IsSampledCell(x, y)) Note(sights, cell);
-    if (!is_top_ || !NeedsBadPictures(context_, sights) || IsSmooth(x, y, *cell)) return;
+    if (!is_top_ || !NeedsBadPictures(context_, sights)) return;
+    if (IsSmoothAround(*layer_, x, y, ground_.cell_side)) return;
     cell->is_covered = cell->is_thin = false;
     cell->cause = GapCause::kBadPicture;
   }

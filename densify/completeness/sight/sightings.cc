@@ -90,6 +90,7 @@ std::vector<Sight> SightsOf(const SightContext& context, const std::vector<int>&
         sight.kind = SightKind::kEdge;
       }
     }
+    sight.across = across;
     sight.gsd = across / std::sqrt(cosine);
     sight.toward = to_camera / distance;
     sights.push_back(sight);
@@ -140,6 +141,16 @@ double NearestGsd(const std::vector<Sight>& sights) {
 
 bool IsSeenFromTwoSides(const std::vector<Sight>& sights, double min_parallax_deg) {
   return HasPair(sights, min_parallax_deg, IsSeen);
+}
+
+double LevelGsd(const std::vector<Sight>& sights, const Eigen::Vector3d& up) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Sight& s : sights) {
+    if (s.kind == SightKind::kMasked) continue;
+    const double cosine = std::max(kMinCosine, up.dot(s.toward));
+    nearest = std::min(nearest, s.across / std::sqrt(cosine));
+  }
+  return nearest;
 }
 
 uint8_t MedianTexture(const std::vector<Sight>& sights) {

@@ -23,6 +23,7 @@ struct Sight {
   SightKind kind = SightKind::kGood;
   uint8_t texture = 0;     // as in PictureFacts
   double gsd = 0;          // units a pixel on the surface, mean of both directions
+  double across = 0;       // units a pixel across the line of sight
   Eigen::Vector3d toward;  // unit, from the place to the camera
 };
 
@@ -51,6 +52,9 @@ int NumGood(const std::vector<Sight>& sights);
 std::optional<double> PairGsd(const std::vector<Sight>& sights, double min_parallax_deg);
 // Of all but the masked ones; infinite for none.
 double NearestGsd(const std::vector<Sight>& sights);
+// As if the place were level, of all but the masked ones: how far away it lies, whatever its own
+// slope is. `up`: unit. Infinite for none.
+double LevelGsd(const std::vector<Sight>& sights, const Eigen::Vector3d& up);
 // Median of the good ones'; kUnknownTexture for fewer than two.
 uint8_t MedianTexture(const std::vector<Sight>& sights);
 // Whether two pictures, be they blurred, see the place from two sides.

@@ -24,7 +24,7 @@ inline constexpr double kCellSpacings = 2;  // side of a cell, in wanted spacing
 
 struct GroundCell {
   float height = 0;    // along the side's axis: mean of the points, or the predicted surface's
-  float gsd = 0;       // units a pixel on it, of the nearest picture
+  float gsd = 0;       // units a pixel of the nearest picture, as if it were level
   float area = 0;      // units^2 of surface, along its slope
   uint16_t count = 0;  // points of enough confidence
   bool is_coherent = false;  // its points lie on one surface with those around

@@ -121,6 +121,7 @@ class Causes : public testing::Test {
     sight.kind = kind;
     sight.texture = texture;
     sight.gsd = 1 + angle_deg;
+    sight.across = 1;
     sight.toward = {std::sin(a), 0, std::cos(a)};
     return sight;
   }
@@ -151,6 +152,9 @@ TEST_F(Causes, InOrder) {
   EXPECT_EQ(PairGsd({See(K::kGood, 0), See(K::kGood, 30), See(K::kGood, 13)}, 2), 14);
   EXPECT_EQ(PairGsd({See(K::kGood, 0), See(K::kBad, 9), See(K::kGood, 1)}, 2), std::nullopt);
   EXPECT_EQ(NearestGsd({See(K::kMasked, 0), See(K::kHidden, 3), See(K::kGood, 9)}), 4);
+  // The nearest one by the line of sight, whatever the GSD on the surface's own slope.
+  EXPECT_NEAR(LevelGsd({See(K::kMasked, 0), See(K::kHidden, 60), See(K::kGood, 75)}, {0, 0, 1}),
+              std::sqrt(2.0), 1e-9);
   EXPECT_FALSE(IsSeenFromTwoSides({See(K::kGood, 0), See(K::kHidden, 9), See(K::kBad, 1)}, 2));
   EXPECT_TRUE(IsSeenFromTwoSides({See(K::kGood, 0), See(K::kBad, 9)}, 2));
   EXPECT_NEAR(ParallaxDeg({See(K::kGood, 0), See(K::kGood, 9), See(K::kBad, 20)}), 9, 1e-6);

@@ -1,0 +1,56 @@
+#include "densify/completeness/judge_ground.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "tests/densify/completeness/flat_survey.h"
+
+namespace colmap_seapoint {
+namespace {
+
+const Eigen::Vector2d kPlace(0.1, 1.9);
+constexpr double kSide = kCellSpacings * kFlatGsd;
+
+int CellOf(double at) { return static_cast<int>(std::floor(at / kSide)); }
+
+// A strip that was blurred as a whole, over points at these heights, in cells' sides.
+GroundCell BlurredCellAt(const std::function<double(int x, int y)>& height) {
+  const SparseModel model = MakeFlatSurvey({1, 4, 1.6, 3.2});
+  CompletenessInput input = FlatInput(model, [](const Eigen::Vector2d&) { return true; });
+  for (PictureFacts& facts : input.facts) facts.is_bad = true;
+  const auto flat = input.for_each_point;
+  input.for_each_point = [&](const auto& take) {
+    flat([&](ConfidentPoint point) {
+      Eigen::Vector3d& xyz = point.place.xyz;
+      xyz.z() = kSide * height(CellOf(xyz.x()), CellOf(xyz.y()));
+      take(point);
+    });
+  };
+  CompletenessOptions options;
+  options.spacing = kFlatGsd;
+  const CompletenessResult result = AssessCompleteness(input, options, 1);
+  return *result.ground.layers.at({Side::kTop, 0})
+              .cells.Find(CellOf(kPlace.x()), CellOf(kPlace.y()));
+}
+
+TEST(JudgeGround, BlurredPicturesCoverWhatTheyShowSmooth) {
+  EXPECT_TRUE(BlurredCellAt([](int, int) { return 0.0; }).is_covered);
+}
+
+TEST(JudgeGround, BlurredPicturesDoNotCoverWhatTheyShowRough) {
+  const GroundCell cell = BlurredCellAt([](int x, int y) { return 0.8 * ((x + y + 3000) % 3); });
+  EXPECT_FALSE(cell.is_covered);
+  EXPECT_EQ(cell.cause, GapCause::kBadPicture);
+}
+
+// The surroundings tell it, and not a single cell that stands out.
+TEST(JudgeGround, OneRoughCellInASmoothPlaceIsCovered) {
+  const int x0 = CellOf(kPlace.x()), y0 = CellOf(kPlace.y());
+  const auto height = [&](int x, int y) { return x == x0 && y == y0 ? 0.8 : 0.0; };
+  EXPECT_TRUE(BlurredCellAt(height).is_covered);
+}
+
+}  // namespace
+}  // namespace colmap_seapoint
