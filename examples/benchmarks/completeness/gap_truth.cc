@@ -29,8 +29,7 @@ constexpr int kScaleCells = 7;  // places of so many cells both ways tell the su
 struct Seen {
   Kind kind;
   Eigen::Vector3d toward;
-  double gsd;        // metres a pixel on the surface
-  double level_gsd;  // as if it were level
+  double gsd;  // metres a pixel on the surface
 };
 
 // Of the coarser of the two good pictures whose GSD over their angle, up to 11.5 degrees, is least.
@@ -62,10 +61,9 @@ bool HasPair(const std::vector<Seen>& seen, const std::set<Kind>& kinds) {
   return false;
 }
 
-// Distance makes background of a place, not the slope of a ripple's face.
-double NearestLevelGsd(const std::vector<Seen>& seen) {
+double NearestGsd(const std::vector<Seen>& seen) {
   double nearest = kBeyond;
-  for (const Seen& s : seen) nearest = std::min(nearest, s.level_gsd);
+  for (const Seen& s : seen) nearest = std::min(nearest, s.gsd);
   return nearest;
 }
 
@@ -77,10 +75,7 @@ bool IsAtEdge(const Camera& camera, const Eigen::Vector2d& pixel) {
 class CellTruth {
  public:
   CellTruth(const SurveyTruth& truth, const PlantedGaps& gaps)
-      : truth_(truth),
-        gaps_(gaps),
-        visibility_(truth),
-        up_(truth.surface.WorldFromGround().rotation * Eigen::Vector3d::UnitZ()) {
+      : truth_(truth), gaps_(gaps), visibility_(truth) {
     for (const auto& [id, camera] : truth.model.cameras)
       cameras_.try_emplace(id, truth.port, camera);
   }
@@ -96,13 +91,11 @@ class CellTruth {
       if ((center - hit.xyz).norm() > truth_.max_range) continue;
       const bool is_visible = visibility_.Project(i, hit.xyz, hit.normal).has_value();
       const Eigen::Vector3d toward = (center - hit.xyz).normalized();
-      const double across = GsdAt(camera.InWater(), image.cam_from_world * hit.xyz);
-      const auto on_plane = [&](const Eigen::Vector3d& normal) {
-        return across / std::sqrt(std::max(0.17, normal.dot(toward)));
-      };
+      const double gsd = GsdAt(camera.InWater(), image.cam_from_world * hit.xyz) /
+                         std::sqrt(std::max(0.17, hit.normal.dot(toward)));
       Kind kind = is_visible ? KindOf(image.name) : Kind::kHidden;
       if (kind == Kind::kGood && IsAtEdge(camera.InWater(), *pixel)) kind = Kind::kEdge;
-      seen.push_back({kind, toward, on_plane(hit.normal), on_plane(up_)});
+      seen.push_back({kind, toward, gsd});
     }
     return seen;
   }
@@ -148,7 +141,6 @@ class CellTruth {
   const SurveyTruth& truth_;
   const PlantedGaps& gaps_;
   SurfaceVisibility visibility_;
-  Eigen::Vector3d up_;  // world
   std::map<uint32_t, PortCamera> cameras_;
 };
 
@@ -242,7 +234,7 @@ GapTruth MeasureGapTruth(const SurveyTruth& truth, const PlantedGaps& gaps,
       const double gsd = std::max(result.survey_gsd, pair_gsd < kBeyond ? pair_gsd : 0);
       const double radius = std::max(kCoveredGsd, kCoveredSpacings * step) * gsd;
       cell.is_covered = squared <= radius * radius;
-      cell.is_expected = cell.is_covered || NearestLevelGsd(seen) <= kFar * result.survey_gsd;
+      cell.is_expected = cell.is_covered || NearestGsd(seen) <= kFar * result.survey_gsd;
       if (cell.is_covered) continue;
       cell.cause = cell_truth.CauseAt(seen, place);
       cell.is_planted = cell_truth.IsPlantedAt(place);

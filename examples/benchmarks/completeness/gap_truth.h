@@ -48,9 +48,7 @@ struct GapTruth {
 // point lies within two GSD (or one and a half spacings) of it: of the survey's own, or those of
 // the two pictures that measure it best where these are coarser. Expected is what is covered, and
 // what a picture that was taken, or would have been (the lost and the removed ones), holds at twice
-// the survey's own GSD or less, as if the ground were level there; what all see from farther away
-// is background. (By the ground's own slope the faces of ripples far out were expected in stripes,
-// and a ledge in the midst of the survey, turned away from its pictures, was background.)
+// the survey's own GSD or less; what all see from farther away is background.
 GapTruth MeasureGapTruth(const SurveyTruth& truth, const PlantedGaps& gaps,
                          const std::vector<Eigen::Vector3f>& points, int num_threads);
 
