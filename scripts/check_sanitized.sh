@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # scripts/check_sanitized.sh files   memory and undefined behaviour: the unit tests of what reads
 #                                    files, and the parsers on damaged ones; part of scripts/test.sh
-# scripts/check_sanitized.sh asan    the same and the unit tests of feature and densify; a quarter of
-#                                    an hour, for after a change there and before a release
+# scripts/check_sanitized.sh asan    the same and the unit tests of tracks, remeasuring, feature and
+#                                    densify; a quarter of an hour, for after a change there and
+#                                    before a release
 # scripts/check_sanitized.sh tsan    threads: the unit tests of what runs on several; some minutes,
 #                                    for once a week
 #
@@ -13,8 +14,8 @@ preset=${1:-}
 tests=() targets=()
 case $preset in
   files | asan)
-    tests=(base_test system_test io_test tracks_test remeasuring_test)
-    [ "$preset" = files ] || tests+=(feature_test densify_test)
+    tests=(base_test system_test io_test)
+    [ "$preset" = files ] || tests+=(tracks_test remeasuring_test feature_test densify_test)
     preset=asan
     targets=(parser_fuzz_targets)
     # Whole surveys, whole pairs and golden hashes are for the plain build: here they would take
