@@ -13,6 +13,9 @@ constexpr int kSide = TiledGrid<GroundCell>::kSide;
 // Without a limit of sight, pictures that look towards the horizon are cut off at that many
 // heights.
 constexpr double kMaxHeights = 8;
+// Tiles from below a picture that it may show something of, in any direction: so many, or as many
+// as the heights above are; never more. What a model that has gone wrong claims to see is endless.
+constexpr double kNearTiles = 48, kMostTiles = 128;
 // A hole on a wall: covered within so many cells in three of four directions, at about its depth.
 constexpr int kHoleReach = 24, kHoleDepth = 12;
 constexpr double kDenseTile = 0.25;
@@ -21,6 +24,10 @@ constexpr int kMaxReach = 4;  // cells
 
 struct Box {
   Eigen::Vector2d low, high;
+  void Clip(const Eigen::Vector2d& center, double half_side) {
+    low = low.cwiseMax((center.array() - half_side).matrix());
+    high = high.cwiseMin((center.array() + half_side).matrix());
+  }
   void Take(const Eigen::Vector2d& place) {
     low = low.cwiseMin(place);
     high = high.cwiseMax(place);
@@ -28,7 +35,8 @@ struct Box {
 };
 
 // What a view may show of a level ground at the height of what is below it, in the layer's plan.
-Box FootprintBox(const SurveyView& view, const GroundLayer& layer) {
+// `tile`: its side, units.
+Box FootprintBox(const SurveyView& view, const GroundLayer& layer, double tile) {
   const Eigen::Vector3d center = layer.layer_from_world * view.center;
   const double above = center.z() - layer.surface.At(center.x(), center.y()).height;
   const double reach =
@@ -51,6 +59,8 @@ Box FootprintBox(const SurveyView& view, const GroundLayer& layer) {
   const Eigen::Vector2d margin = 0.5 * (box.high - box.low);
   box.low -= margin;
   box.high += margin;
+  const double heights = kMaxHeights * std::abs(above);
+  box.Clip(center.head<2>(), std::clamp(heights, kNearTiles * tile, kMostTiles * tile));
   return box;
 }
 
@@ -63,8 +73,8 @@ Eigen::Vector3d TileMiddle(const Ground& ground, const GroundLayer& layer, const
 }
 
 void SpreadFootprint(const SurveyView& view, Ground* ground, GroundLayer* layer) {
-  const Box box = FootprintBox(view, *layer);
   const double side = kSide * ground->cell_side;
+  const Box box = FootprintBox(view, *layer, side);
   const auto tile_of = [&](double at) {
     return static_cast<int>(std::clamp(std::floor(at / side), -1e8, 1e8));
   };

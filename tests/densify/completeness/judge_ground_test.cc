@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <functional>
 
@@ -50,6 +51,24 @@ TEST(JudgeGround, OneRoughCellInASmoothPlaceIsCovered) {
   const int x0 = CellOf(kPlace.x()), y0 = CellOf(kPlace.y());
   const auto height = [&](int x, int y) { return x == x0 && y == y0 ? 0.8 : 0.0; };
   EXPECT_TRUE(BlurredCellAt(height).is_covered);
+}
+
+// A picture that looks ahead, of a model whose points lie anywhere.
+TEST(SpreadCells, EndsWhereAModelThatWentWrongSeesForEver) {
+  SparseModel model = MakeFlatSurvey({1, 1, 1.6, 3.2});
+  Rigid3d& pose = model.images[0].cam_from_world;
+  const Eigen::Vector3d center = pose.OriginInSource();
+  pose.rotation =
+      Eigen::Quaterniond(Eigen::AngleAxisd(1.2, Eigen::Vector3d::UnitX())) * pose.rotation;
+  pose.translation = -(pose.rotation * center);
+  Ground ground;
+  ground.cell_side = 0.03;
+  AddPoint({Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()}, &ground);
+  FinishPoints(1, &ground);
+  SpreadCells(MakeViews(model, 1e6), &ground);
+  const size_t num_tiles = ground.LayerAt({Side::kTop, 0}).cells.Keys().size();
+  EXPECT_GT(num_tiles, 100u);
+  EXPECT_LT(num_tiles, 10000u);
 }
 
 }  // namespace
