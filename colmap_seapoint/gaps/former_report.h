@@ -34,7 +34,7 @@ std::string FormerReportText(const FormerReport& report);
 FormerReport ParseFormerReport(const std::string& text, const std::string& origin);
 
 // w, x, y, z of the rotation, then the translation: as both texts have it.
-std::vector<double> PoseNumbers(const Rigid3d& cam_from_world);
+std::vector<double> PoseNumbers(const Rigid3d& pose);
 
 // Moves the gaps by the similarity that takes the pictures from where they stood to where those of
 // the same names stand now; not at all where none has moved, or none is known to have stood
