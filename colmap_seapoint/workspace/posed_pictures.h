@@ -10,7 +10,8 @@
 
 namespace colmap_seapoint {
 
-// Of the model in `path`, a line a picture in its order: its name, and a hash of its pose, camera and mask.
+// Of the model in `path`, a line a picture in its order: its name, and a hash of its pose, camera
+// and mask.
 std::vector<std::string> PosedPictureLines(const std::filesystem::path& path,
                                            const PictureMasks& masks);
 
