@@ -12,17 +12,6 @@ constexpr double kSameArea = 0.1;  // of the area before
 constexpr double kJoinedShare = 0.25;
 constexpr size_t kMaxListed = 12;  // ids of one fate
 
-// The former gap in the plan of its layer.
-AskedArea InPlan(const FormerOutline& outline, const PlanFrame& frame) {
-  const Eigen::Matrix3d layer_from_world = SideFromMap(outline.layer.side) * frame.map_from_world;
-  AskedArea area;
-  for (const auto& corners : outline.rings) {
-    Ring& ring = area.rings.emplace_back();
-    for (const Eigen::Vector3d& p : corners) ring.push_back((layer_from_world * p).head<2>());
-  }
-  return area;
-}
-
 // Area of the gap's cells that lie within.
 double AreaWithin(const Gap& gap, const AskedArea& area, double cell_side) {
   const auto& cells = gap.region.cells;
@@ -35,7 +24,7 @@ double AreaWithin(const Gap& gap, const AskedArea& area, double cell_side) {
 
 // The gap that most of what is missing of the former one is part of; nullptr: it is closed.
 const Gap* JoinedTo(const FormerOutline& outline, double area, const CompletenessResult& result) {
-  const AskedArea before = InPlan(outline, result.ground.frame);
+  const AskedArea before{InPlan(outline, result.ground.frame).rings};
   const Gap* joined = nullptr;
   double most = kJoinedShare * area;
   for (const Gap& gap : result.gaps) {

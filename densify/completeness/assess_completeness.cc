@@ -131,21 +131,6 @@ Eigen::Vector3d CentroidOf(const Ground& ground, const GapRegion& region) {
   return sum / static_cast<double>(region.cells.size());
 }
 
-std::vector<FormerGap> FormerGaps(const std::vector<FormerOutline>& outlines,
-                                  const PlanFrame& frame) {
-  std::vector<FormerGap> gaps;
-  for (const FormerOutline& outline : outlines) {
-    const Eigen::Matrix3d layer_from_world = SideFromMap(outline.layer.side) * frame.map_from_world;
-    FormerGap gap{outline.id, outline.layer, {}};
-    for (const std::vector<Eigen::Vector3d>& corners : outline.rings) {
-      Ring& ring = gap.rings.emplace_back();
-      for (const Eigen::Vector3d& p : corners) ring.push_back((layer_from_world * p).head<2>());
-    }
-    gaps.push_back(std::move(gap));
-  }
-  return gaps;
-}
-
 void FindGaps(const CompletenessInput& input, const std::vector<SurveyView>& views,
               const PassPlan& plan, CompletenessResult* result) {
   const double min_area = std::pow(kMinGapSpacings * result->spacing, 2);
@@ -158,9 +143,12 @@ void FindGaps(const CompletenessInput& input, const std::vector<SurveyView>& vie
   for (const GapRegion& region : regions) {
     places.push_back({region.layer, &region.cells});
   }
+  std::vector<FormerGap> former;
+  for (const FormerOutline& outline : input.former) {
+    former.push_back(InPlan(outline, result->ground.frame));
+  }
   const std::vector<int> ids =
-      AssignGapIds(places, result->ground.cell_side, FormerGaps(input.former, result->ground.frame),
-                   input.last_id);
+      AssignGapIds(places, result->ground.cell_side, former, input.last_id);
   for (size_t i = 0; i < regions.size(); ++i) {
     Gap gap;
     gap.id = ids[i];
@@ -187,6 +175,16 @@ void JoinPasses(CompletenessResult* result) {
 }
 
 }  // namespace
+
+FormerGap InPlan(const FormerOutline& outline, const PlanFrame& frame) {
+  const Eigen::Matrix3d layer_from_world = SideFromMap(outline.layer.side) * frame.map_from_world;
+  FormerGap gap{outline.id, outline.layer, {}};
+  for (const std::vector<Eigen::Vector3d>& corners : outline.rings) {
+    Ring& ring = gap.rings.emplace_back();
+    for (const Eigen::Vector3d& p : corners) ring.push_back((layer_from_world * p).head<2>());
+  }
+  return gap;
+}
 
 CompletenessResult AssessCompleteness(const CompletenessInput& input,
                                       const CompletenessOptions& options, int num_threads) {

@@ -43,6 +43,9 @@ struct FormerOutline {
   std::vector<std::vector<Eigen::Vector3d>> rings;  // world
 };
 
+// The same in the plan of its layer.
+FormerGap InPlan(const FormerOutline& outline, const PlanFrame& frame);
+
 struct CompletenessInput {
   const SparseModel* model = nullptr;  // with points and their ids by image (ModelContent)
   // Calls its argument for every point of the cloud, in order. Called twice.
