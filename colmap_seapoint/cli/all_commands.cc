@@ -2,7 +2,7 @@
 #include "colmap_seapoint/merging/cloud_merger.h"
 #include "colmap_seapoint/pipeline/cloud_exporter.h"
 #include "colmap_seapoint/pipeline/compare.h"
-#include "colmap_seapoint/pipeline/completeness.h"
+#include "colmap_seapoint/pipeline/completeness/completeness_reporter.h"
 #include "colmap_seapoint/pipeline/densify.h"
 #include "colmap_seapoint/pipeline/extract.h"
 #include "colmap_seapoint/pipeline/markers/marker_finder.h"

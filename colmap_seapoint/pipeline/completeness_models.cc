@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <system_error>
 
 #include "colmap_seapoint/base/error.h"
 #include "colmap_seapoint/base/progress.h"
@@ -10,7 +11,8 @@
 #include "colmap_seapoint/io/files/run_report_json.h"
 #include "colmap_seapoint/io/image/picture_masks.h"
 #include "colmap_seapoint/orthomosaic/orthomosaic.h"
-#include "colmap_seapoint/pipeline/completeness.h"
+#include "colmap_seapoint/pipeline/completeness/completeness_reporter.h"
+#include "colmap_seapoint/pipeline/completeness/write_gap_files.h"
 #include "colmap_seapoint/pipeline/page/completeness_page.h"
 #include "densify/completeness/assess_completeness.h"
 
@@ -19,6 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr char kPrefix[] = "completeness_", kFormerPrefix[] = "completeness_before_";
+constexpr char kFactsPrefix[] = "picture_facts_";  // of files beside the stages' records
 
 struct Assessment {
   std::string answer;
@@ -124,6 +127,17 @@ std::string AnswerOf(CompletenessReporterOptions reporter, const Stage& stage,
   }
 }
 
+fs::path FactsFile(const std::string& number, const WorkspaceState& state) {
+  return state.StateFolder() / (kFactsPrefix + number);
+}
+
+// Those of the models from that number on.
+void RemoveStaleFacts(size_t first, const WorkspaceState& state) {
+  std::error_code ignored;
+  for (size_t k = first; fs::remove(FactsFile(std::to_string(k), state), ignored); ++k) {
+  }
+}
+
 }  // namespace
 
 void ReportCompletenessOfModels(const AutomaticReconstructorOptions& options,
@@ -135,13 +149,14 @@ void ReportCompletenessOfModels(const AutomaticReconstructorOptions& options,
   for (const char* prefix : {kPrefix, kFormerPrefix}) {
     RemoveStaleStages(prefix, num_reports, folder, state);
   }
+  RemoveStaleFacts(num_reports, *state);
   if (!options.report_completeness) return;
   // Of the page's map: what it is made of beyond what is named anyway.
   const std::string map = kOrthomosaicVersion + OptionsFingerprint(OptionValues(options.map));
   for (ModelSummary& model : *models) {
     if (model.densification.points == 0) continue;
-    const CompletenessReporterOptions reporter =
-        ReporterOptions(options, workspace, *models, model);
+    CompletenessReporterOptions reporter = ReporterOptions(options, workspace, *models, model);
+    reporter.facts_file = FactsFile(model.name, *state).string();
     const Stage stage = {
         kPrefix + model.name, kCompletenessVersion,
         InputsOf(reporter, model, mapper_fingerprint, model.map_path.empty() ? "" : map, *report),

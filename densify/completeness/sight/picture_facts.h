@@ -9,6 +9,9 @@
 
 namespace colmap_seapoint {
 
+// Of MeasurePicture(): raised when it says something else of a picture.
+inline constexpr char kPictureFactsVersion[] = "1";
+
 inline constexpr int kPictureCell = 16;  // pixels
 
 enum PictureCellFlag : uint8_t { kMaskedCell = 1, kBadlyExposedCell = 2 };

@@ -1,22 +1,14 @@
-#include "colmap_seapoint/pipeline/completeness.h"
+#include "colmap_seapoint/pipeline/completeness/completeness_reporter.h"
 
 #include <algorithm>
 #include <filesystem>
-#include <mutex>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <vector>
 
 #include "colmap_seapoint/base/error.h"
-#include "colmap_seapoint/base/parallel.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/gaps/answer_line.h"
-#include "colmap_seapoint/gaps/completeness_json.h"
-#include "colmap_seapoint/gaps/gap_files.h"
-#include "colmap_seapoint/gaps/gap_kml.h"
-#include "colmap_seapoint/gaps/gap_map.h"
-#include "colmap_seapoint/gaps/route_files.h"
 #include "colmap_seapoint/io/cloud/ply_reader.h"
 #include "colmap_seapoint/io/cloud/seen_cloud.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
@@ -24,10 +16,11 @@
 #include "colmap_seapoint/io/files/model_units.h"
 #include "colmap_seapoint/io/gis/area_geojson.h"
 #include "colmap_seapoint/io/image/image_file.h"
-#include "colmap_seapoint/io/image/picture_masks.h"
 #include "colmap_seapoint/io/outputs/output_folder.h"
 #include "colmap_seapoint/orthomosaic/ground/map_frame.h"
 #include "colmap_seapoint/pictures/picture_scale.h"
+#include "colmap_seapoint/pipeline/completeness/measure_pictures.h"
+#include "colmap_seapoint/pipeline/completeness/write_gap_files.h"
 #include "colmap_seapoint/pipeline/page/completeness_page.h"
 #include "colmap_seapoint/workspace/output_paths.h"
 #include "densify/completeness/assess_completeness.h"
@@ -118,14 +111,6 @@ struct Seen {
   std::vector<double> brightness;  // by image_idx; -1: unknown
 };
 
-PictureFacts ReadFacts(const CompletenessReporterOptions& options, const PictureMasks& masks,
-                       const std::string& name, double* brightness) {
-  const GrayImage luma = ReadGrayImage(fs::path(options.image_path) / name);
-  const uint64_t sum = std::accumulate(luma.data.begin(), luma.data.end(), uint64_t{0});
-  *brightness = static_cast<double>(sum) / static_cast<double>(luma.data.size());
-  return MeasurePicture(luma, masks.Decode(name, masks.Open(name), luma.width, luma.height));
-}
-
 constexpr int kNumReadings = 2;  // of the cloud (CompletenessInput)
 
 // A step a picture that is looked at, and as many each time that the cloud is read.
@@ -152,40 +137,17 @@ class AssessmentProgress {
   Progress progress_;
 };
 
-// By image_idx. A picture that cannot be read is named, and counts as a bad one.
-std::vector<PictureFacts> MeasurePictures(const CompletenessReporterOptions& options,
-                                          const SparseModel& model, AssessmentProgress* progress,
-                                          Seen* seen, RunReport* report) {
-  std::vector<PictureFacts> facts(model.images.size());
-  seen->brightness.assign(facts.size(), -1);
-  if (options.image_path.empty()) return facts;
-  const PictureMasks masks(options.mask_path);
-  std::vector<std::string> problems(model.images.size());
-  std::mutex mutex;
-  int64_t num_done = 0;
-  ParallelFor(options.run.num_threads, static_cast<int64_t>(facts.size()), [&](int64_t index) {
-    const auto i = static_cast<size_t>(index);
-    try {
-      facts[i] = ReadFacts(options, masks, model.images[i].name, &seen->brightness[i]);
-    } catch (const Error& e) {
-      problems[i] = e.Finding();
-    }
-    const std::lock_guard<std::mutex> lock(mutex);
-    progress->LookedAtPictures(++num_done);
-  });
-  for (size_t i = 0; i < problems.size(); ++i) {
-    if (problems[i].empty()) continue;
-    LeaveOut(model.images[i].name, problems[i], report);
-    facts[i].is_bad = true;
-  }
-  if (std::none_of(facts.begin(), facts.end(), [](const auto& f) { return !f.Empty(); })) {
-    throw Error(options.image_path,
-                "none of the model's pictures can be read (" + model.images[0].name + ": " +
-                    problems[0] + ")",
-                "give the --image_path that the model was made from, or none");
-  }
-  JudgePictures(&facts);
-  return facts;
+// By image_idx.
+std::vector<PictureFacts> FactsOf(const CompletenessReporterOptions& options,
+                                  const SparseModel& model, AssessmentProgress* progress,
+                                  Seen* seen, RunReport* report) {
+  seen->brightness.assign(model.images.size(), -1);
+  if (options.image_path.empty()) return std::vector<PictureFacts>(model.images.size());
+  PictureMeasures measures = MeasurePictures(
+      model, {options.image_path, options.mask_path, options.facts_file}, options.run.num_threads,
+      [&](int64_t num_done) { progress->LookedAtPictures(num_done); }, report);
+  seen->brightness = std::move(measures.brightness);
+  return std::move(measures.facts);
 }
 
 // Of the first reading some points are kept.
@@ -291,7 +253,7 @@ CompletenessResult Assess(const CompletenessReporterOptions& options, const Spar
   input.posed_elsewhere = options.posed_elsewhere;
   input.former = former.gaps;
   input.last_id = former.last_id;
-  input.facts = MeasurePictures(options, model, &progress, seen, report);
+  input.facts = FactsOf(options, model, &progress, seen, report);
   CompletenessResult result =
       AssessCompleteness(input, options.completeness, options.run.num_threads);
   CheckResult(options, result);
@@ -300,56 +262,6 @@ CompletenessResult Assess(const CompletenessReporterOptions& options, const Spar
   }
   progress.Finish();
   return result;
-}
-
-// Of the layers with gaps, but for the top, which is always drawn.
-std::set<LayerKey> LayersWithGaps(const CompletenessResult& result) {
-  std::set<LayerKey> layers;
-  for (const Gap& gap : result.gaps) layers.insert(gap.region.layer);
-  layers.erase({Side::kTop, 0});
-  return layers;
-}
-
-std::string MapName(const LayerKey& layer) {
-  std::string name = "map_" + LayerName(layer) + ".png";
-  std::replace(name.begin(), name.end(), ':', '_');
-  return name;
-}
-
-// Where the model is georeferenced; else those of an earlier run go, as does a route without gaps.
-void WriteGeographic(const CompletenessResult& result, const GapPlaces& places,
-                     OutputFolder* folder) {
-  const auto write = [&](const std::string& name, bool is_wanted, const auto& text) {
-    if (is_wanted) {
-      folder->Claim({name});
-      WriteTextFile(folder->Path() / name, text(result, places));
-    } else if (folder->IsOurs(name)) {
-      folder->Remove(name);
-    }
-  };
-  const bool has_route = places.IsGeographic() && !result.route.empty();
-  write("gaps.kml", places.IsGeographic(), GapsKml);
-  write("route.plan", has_route, RoutePlan);
-  write("route.waypoints", has_route, RouteWaypoints);
-  write("route.cmp", has_route, RouteCockpitMission);
-}
-
-// Of layers that an earlier run has found gaps in.
-void RemoveFormerMaps(OutputFolder* folder) {
-  for (const fs::path& file : FilesOfOurs(folder->Path())) {
-    const std::string name = file.filename().string();
-    if (name.rfind("map_", 0) == 0) folder->Remove(name);
-  }
-}
-
-void WriteMaps(const CompletenessResult& result, const std::string& unit, OutputFolder* folder) {
-  RemoveFormerMaps(folder);
-  const ColorImage map = DrawGapMap(result, {Side::kTop, 0}, unit);
-  if (!map.Empty()) WriteImage(folder->Path() / "map.png", map);
-  for (const LayerKey& layer : LayersWithGaps(result)) {
-    folder->Claim({MapName(layer)});
-    WriteImage(folder->Path() / MapName(layer), DrawGapMap(result, layer, unit));
-  }
 }
 
 }  // namespace
@@ -403,14 +315,9 @@ CompletenessReport ReportCompleteness(const CompletenessReporterOptions& options
     const std::vector<GapChange> changes = ChangesOf(former, result);
     report.images_used = report.images_in - static_cast<int64_t>(report.left_out.size());
     const GapPlaces places(units.value_or(ModelUnits()), result.ground.frame);
-    const fs::path& output = folder.Path();
-    WriteTextFile(output / "gaps.geojson", GapsGeoJson(result, model, places));
-    WriteTextFile(output / "gaps.csv", GapsCsv(result, model, places));
-    WriteGeographic(result, places, &folder);
-    WriteMaps(result, places.Unit(), &folder);
-    WriteTextFile(output / kCompletenessFile, CompletenessJson(result, model, places, changes));
+    WriteGapFiles({model, result, places, changes}, &folder);
     done.answer = CompletenessLine(result, model, places, changes);
-    WriteTextFile(output / "index.html",
+    WriteTextFile(folder.Path() / "index.html",
                   CompletenessPage({model, result, places, done.answer, options.image_path,
                                     options.cloud_path, options.map_path, std::move(seen.points),
                                     std::move(seen.brightness), options.run.num_threads}));

@@ -14,8 +14,6 @@
 
 namespace colmap_seapoint {
 
-inline constexpr char kCompletenessFile[] = "completeness.json";
-
 struct CompletenessReporterOptions {
   std::string image_path;   // folder of the pictures; empty: nothing is known of texture and blur
   std::string input_path;   // COLMAP model, binary or text
@@ -30,6 +28,9 @@ struct CompletenessReporterOptions {
   // The report before, whose gaps are looked for again; nullopt: what lies in output_path. Set by
   // the chain, whose interrupted runs find a report there that is none before.
   std::optional<FormerReport> former;
+  // Where measures of the pictures are kept between runs (facts_file.h); empty = nowhere. Set by
+  // the chain.
+  std::string facts_file;
   CompletenessOptions completeness;
   bool self_check = false;  // measures the tolerance (densify/self_check)
   RunOptions run;
