@@ -6,6 +6,7 @@
 
 #include "colmap_seapoint/io/colmap/colmap_database.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
+#include "colmap_seapoint/io/colmap/database_features.h"
 #include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/colmap/database_matches.h"
 
@@ -25,6 +26,7 @@ class PartReturn {
       : part_(part), grown_(grown), whole_(*whole), were_there_(IdsOf(*whole)) {
     if (!whole->points3D.empty()) next_id_ = whole->points3D.rbegin()->first + 1;
     AddImages();
+    AddLaterSeaPoints();
   }
 
   void Run() {
@@ -42,6 +44,18 @@ class PartReturn {
       std::fill(ids.begin(), ids.end(), kNoPoint3D);
     }
     for (PosedImage& image : whole_.images) images_[image.image_id] = &image;
+  }
+
+  void AddLaterSeaPoints() {
+    for (const PosedImage& image : part_.images) {
+      const auto in_whole = images_.find(image.image_id);
+      if (in_whole == images_.end()) continue;
+      auto& points2D = in_whole->second->points2D;
+      for (size_t k = points2D.size(); k < image.points2D.size(); ++k) {
+        points2D.push_back(image.points2D[k]);
+        in_whole->second->point3D_ids.push_back(kNoPoint3D);
+      }
+    }
   }
 
   bool IsSeenByNewOnes(const SparsePoint& point) const {
@@ -92,6 +106,17 @@ class PartReturn {
   std::map<uint32_t, PosedImage*> images_;
   uint64_t next_id_ = 1;
 };
+
+// Those that the model was not made of yet.
+void AddLaterSeaPoints(const ColmapDatabase& database, SparseModel* model) {
+  for (PosedImage& image : model->images) {
+    const auto places = ReadKeypointPlaces(database, image.image_id);
+    for (size_t k = image.points2D.size(); k < places.size(); ++k) {
+      image.points2D.push_back(places[k].cast<double>());
+      image.point3D_ids.push_back(kNoPoint3D);
+    }
+  }
+}
 
 }  // namespace
 
@@ -144,6 +169,7 @@ PicturesToAdd FindPicturesToAdd(const std::filesystem::path& database_path,
     if (is_wanted) pictures.names.push_back(image.name);
   }
   pictures.part = PartOf(whole, neighbours);
+  AddLaterSeaPoints(database, &pictures.part);
   return pictures;
 }
 

@@ -25,13 +25,15 @@ struct PicturesToAdd {
   std::vector<std::string> names;  // of all; none where nothing ties any to the model
   SparseModel part;                // the model's: what the mapper continues
 };
-// Throws Error when database or model cannot be read.
+// A picture of the part has all SeaPoints that the database holds of it, also those that came
+// behind the ones that the model was made of. Throws Error when database or model cannot be read.
 PicturesToAdd FindPicturesToAdd(const std::filesystem::path& database_path,
                                 const std::filesystem::path& model_path);
 
 // What the mapper made of a part, in the whole that it is of: the pictures that are new, and what
 // they see. A point of theirs that a feature of the whole has already is that one's, others follow
-// under new ids. Nothing else of the whole changes.
+// under new ids. Pictures of the part get the SeaPoints that they have there. Nothing else of the
+// whole changes.
 void PutPartBack(const SparseModel& part, const SparseModel& grown, SparseModel* whole);
 
 }  // namespace colmap_seapoint

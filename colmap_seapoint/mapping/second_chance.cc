@@ -93,6 +93,24 @@ std::set<std::string> FindSecondChancePictures(const ColmapDatabase& database) {
   return chosen;
 }
 
+TieCount CountTies(const ColmapDatabase& database) {
+  const std::map<uint32_t, std::string> pictures = PicturesWithSeaPoints(database);
+  const Groups groups = GroupsOf(database, pictures);
+  TieCount count;
+  count.num_groups = groups.Sizes().size() + ReadImages(database).size() - pictures.size();
+  for (const auto& [id1, id2] : ReadVerifiedPairs(database)) {
+    if (pictures.count(id1) == 0 || pictures.count(id2) == 0) continue;
+    if (groups.Of(id1) == groups.Of(id2)) continue;
+    count.num_between += ReadTwoViewGeometry(database, {id1, id2}).inliers.size();
+  }
+  return count;
+}
+
+bool TiesMore(const TieCount& after, const TieCount& before) {
+  if (after.num_groups != before.num_groups) return after.num_groups < before.num_groups;
+  return after.num_between > before.num_between;
+}
+
 std::map<uint32_t, uint32_t> TiedGroups(const ColmapDatabase& database) {
   const std::map<uint32_t, std::string> pictures = PicturesWithSeaPoints(database);
   const Groups groups = GroupsOf(database, pictures);

@@ -4,6 +4,7 @@
 // it was matched with, get SI-SeaPoints (paper 4) beside their own.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <set>
@@ -20,6 +21,15 @@ namespace colmap_seapoint {
 // whatever came of it. Pictures without SeaPoints are passed over. Throws Error when the database
 // cannot be read.
 std::set<std::string> FindSecondChancePictures(const ColmapDatabase& database);
+
+// How well all pictures hang together.
+struct TieCount {
+  size_t num_groups = 0;   // a picture without SeaPoints is a group of its own
+  size_t num_between = 0;  // verified matches between pictures of different groups: too few to tie
+};
+TieCount CountTies(const ColmapDatabase& database);
+// Whether more ties the pictures in `after`, be it not enough yet.
+bool TiesMore(const TieCount& after, const TieCount& before);
 
 // The group, named by the smallest id in it, of every picture with SeaPoints, by image_id.
 std::map<uint32_t, uint32_t> TiedGroups(const ColmapDatabase& database);

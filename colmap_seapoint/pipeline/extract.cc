@@ -87,7 +87,7 @@ class Extractor {
   std::string Fingerprint(const RunReport::Input& picture, const std::string& mask_hash,
                           bool is_second_chance) const {
     return kExtractionVersion + (":" + std::to_string(picture.size)) + ":" + picture.hash + ":" +
-           mask_hash + ":" + hash_of_options_ + (is_second_chance ? ":second chance" : "");
+           mask_hash + ":" + hash_of_options_ + (is_second_chance ? kSecondChanceMark : "");
   }
 
   const FeatureExtractorOptions& options_;

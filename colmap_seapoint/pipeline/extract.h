@@ -14,6 +14,9 @@
 
 namespace colmap_seapoint {
 
+// Behind the fingerprint of a picture that got SI-SeaPoints, its own SeaPoints being as before.
+inline constexpr char kSecondChanceMark[] = ":second chance";
+
 struct FeatureExtractorOptions {
   std::string database_path;    // COLMAP database, created when it does not exist
   std::string image_path;       // folder, sub-folders included

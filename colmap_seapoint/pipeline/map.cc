@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 #include <system_error>
@@ -17,6 +18,8 @@
 #include "colmap_seapoint/io/files/run_report_json.h"
 #include "colmap_seapoint/mapping/initial_pair.h"
 #include "colmap_seapoint/mapping/mapper_process.h"
+#include "colmap_seapoint/pairing/tilted_pairs.h"
+#include "colmap_seapoint/pipeline/extract.h"
 #include "colmap_seapoint/workspace/workspace_database.h"
 
 namespace colmap_seapoint {
@@ -64,16 +67,28 @@ std::string Inputs(const MappingPlan& plan, const ColmapDatabase& database,
   return DatabaseFingerprint(database) + (begun ? begun->dump() : "") + PlanText(plan);
 }
 
-// What the models were made of: a line a picture, its id, name, camera and SeaPoints.
-using PictureLines = std::set<std::string>;
+// What the models were made of: the id, name, camera and own SeaPoints of each picture, and what
+// stands behind these (SI-SeaPoints, SeaPoints of views).
+using PictureLines = std::map<std::string, std::string>;
 
 PictureLines LinesOf(const ColmapDatabase& database) {
   PictureLines lines;
   for (const DatabaseImage& image : ReadImages(database)) {
-    lines.insert(std::to_string(image.image_id) + " " + std::to_string(image.camera_id) + " " +
-                 image.name + " " + FeaturesFingerprint(database, image.image_id).value_or(""));
+    const std::string all = FeaturesFingerprint(database, image.image_id).value_or("");
+    const size_t end = std::min(all.find(kSecondChanceMark), all.find(kTiltedMark));
+    const size_t own = std::min(end, all.size());
+    lines[std::to_string(image.image_id) + " " + std::to_string(image.camera_id) + " " +
+          image.name + " " + all.substr(0, own)] = all.substr(own);
   }
   return lines;
+}
+
+// Whether all pictures are there with the SeaPoints that they had, be there more behind them now.
+bool Continue(const PictureLines& lines, const PictureLines& before) {
+  return std::all_of(before.begin(), before.end(), [&](const auto& was) {
+    const auto is = lines.find(was.first);
+    return is != lines.end() && is->second.rfind(was.second, 0) == 0;
+  });
 }
 
 struct MadeOf {
@@ -119,11 +134,7 @@ std::optional<fs::path> ModelToContinue(const MappingPlan& plan, const ColmapDat
   if (models.size() != 1 || plan.job.lens == LensRule::kLeaveToMapper || !made_of) {
     return std::nullopt;
   }
-  const PictureLines lines = LinesOf(database);
-  if (!std::includes(lines.begin(), lines.end(), made_of->pictures.begin(),
-                     made_of->pictures.end())) {
-    return std::nullopt;
-  }
+  if (!Continue(LinesOf(database), made_of->pictures)) return std::nullopt;
   if (plan.job.pictures.size() > kMaxGrowth * made_of->num_begun) return std::nullopt;
   if (!CanTakeIn(models.front(), plan.job.pictures, database)) return std::nullopt;
   return models.front();

@@ -15,14 +15,7 @@
 #include "colmap_seapoint/estimate/preflight.h"
 #include "colmap_seapoint/georeference/marker_search.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
-#include "colmap_seapoint/io/colmap/database_features.h"
-#include "colmap_seapoint/io/colmap/database_images.h"
 #include "colmap_seapoint/io/files/atomic_file.h"
-#include "colmap_seapoint/io/files/content_hash.h"
-#include "colmap_seapoint/io/image/image_file.h"
-#include "colmap_seapoint/io/image/picture_masks.h"
-#include "colmap_seapoint/mapping/second_chance.h"
-#include "colmap_seapoint/pairing/tilted_pairs.h"
 #include "colmap_seapoint/pictures/duplicates.h"
 #include "colmap_seapoint/pictures/exif_positions.h"
 #include "colmap_seapoint/pipeline/completeness_models.h"
@@ -35,6 +28,7 @@
 #include "colmap_seapoint/pipeline/orthomosaic_models.h"
 #include "colmap_seapoint/pipeline/page/job_page.h"
 #include "colmap_seapoint/pipeline/scale_models.h"
+#include "colmap_seapoint/pipeline/tie_pictures.h"
 #include "colmap_seapoint/report/reconstruction_summary.h"
 #include "colmap_seapoint/system/battery.h"
 #include "colmap_seapoint/workspace/workspace_database.h"
@@ -96,51 +90,11 @@ OfWork<bool> DoneBefore(const Stage& database, const WorkspaceState& state) {
   return done;
 }
 
-// The stage that finds the untied pictures: all that decides which they are, but for what the
-// pictures hold (SecondChance::pictures).
-Stage SecondChanceStage(const Options& options, const Stage& database_stage) {
-  return {"second_chance", kMatchingVersion,
-          StageFingerprint(database_stage) + OptionsFingerprint(OptionValues(options.extraction)),
-          ""};
-}
-
-// A picture is told from another one of its name by its content, which the extraction hashes
-// anyway: size and time may be the same (a restored copy), and times differ where nothing did (a
-// moved survey).
-struct SecondChance {
-  std::set<std::string> untied;  // names
-  std::string pictures;          // a hash of all pictures that they were found among
-};
-
-void to_json(nlohmann::ordered_json& json, const SecondChance& chance) {
-  json = {{"untied", chance.untied}, {"pictures", chance.pictures}};
-}
-
-void from_json(const nlohmann::ordered_json& json, SecondChance& chance) {
-  chance = {json.at("untied").get<std::set<std::string>>(), json.at("pictures")};
-}
-
-std::string HashOf(const std::vector<RunReport::Input>& pictures) {
-  std::string text;
-  for (const RunReport::Input& picture : pictures) text += picture.name + " " + picture.hash + "\n";
-  return HashText(text);
-}
-
 // The two cameras of a rig may have one body, and one serial number.
 Options WithRigsCameras(Options options) {
   int* per_folder = &options.reader.single_camera_per_folder;
   if (!options.rig.empty() && *per_folder < 0) *per_folder = 1;
   return options;
-}
-
-FeatureExtractorOptions ExtractorOptions(const Options& options, const Workspace& workspace) {
-  FeatureExtractorOptions extractor;
-  extractor.database_path = workspace.database.string();
-  extractor.image_path = workspace.images.string();
-  extractor.reader = options.reader;
-  extractor.extraction = options.extraction;
-  extractor.run = options.run;
-  return extractor;
 }
 
 // Each once. Throws Error when that leaves a single one.
@@ -155,53 +109,6 @@ PictureSet ReadPictures(const Options& options, const Workspace& workspace) {
               "holds one picture that can be used, " + pictures.readable.front().name,
               "depth takes two pictures at least that show the same place from different points: "
               "add more, which overlap by half or more");
-}
-
-RunReport MatchAll(const Options& options, const Workspace& workspace, size_t num_pictures,
-                   ColmapDatabase* database) {
-  if (MatchesAllPairs(options, num_pictures)) {
-    ExhaustiveMatcherOptions exhaustive;
-    exhaustive.database_path = workspace.database.string();
-    exhaustive.matching = options.matching;
-    exhaustive.run = options.run;
-    return MatchExhaustively(exhaustive, database);
-  }
-  SequentialMatcherOptions sequential;
-  sequential.database_path = workspace.database.string();
-  sequential.pairs = options.pairs;
-  sequential.matching = options.matching;
-  sequential.run = options.run;
-  return MatchSequentially(sequential, database);
-}
-
-// SeaPoints and matches of all pictures; then once more with SI-SeaPoints beside them for those
-// that are untied, and their partners. An earlier run that found these already, among the same
-// pictures, spares the first pass.
-void ExtractAndMatch(const Options& options, const Workspace& workspace, const PictureSet& pictures,
-                     const Stage& second_chance, ColmapDatabase* database, WorkspaceState* state,
-                     RunReport* report) {
-  const FeatureExtractorOptions extractor = ExtractorOptions(options, workspace);
-  const auto pass = [&](const std::set<std::string>& second_chance_names) {
-    const RunReport extracted = ExtractPictures(extractor, pictures, second_chance_names, database);
-    report->images_in = extracted.images_in;
-    report->inputs = extracted.inputs;
-    AddPart(extracted, report);
-    AddPart(MatchAll(options, workspace, pictures.readable.size(), database), report);
-  };
-  const auto known = ResultIfDone<SecondChance>(*state, second_chance);
-  pass(known ? known->untied : std::set<std::string>());
-  if (known && known->pictures == HashOf(report->inputs)) return;
-  if (known && !known->untied.empty()) pass({});
-  state->Forget(second_chance.name);
-  if (options.extraction.num_levels > 1) return;
-  const auto found =
-      RunStage<SecondChance>(state, second_chance, [&]() -> StageOutput<SecondChance> {
-        return {{FindSecondChancePictures(*database), HashOf(report->inputs)}, {}};
-      });
-  if (found.untied.empty()) return;
-  LogInfo(std::to_string(found.untied.size()) +
-          " pictures are untied, or may tie one that is: SI-SeaPoints for them too");
-  pass(found.untied);
 }
 
 // Pictures that are in none of the models are left out.
@@ -255,76 +162,6 @@ void ScaleModels(const Options& options, const PictureSet& pictures, const Works
   }
 }
 
-MaskedPicture ReadMasked(const fs::path& folder, const PictureMasks& masks,
-                         const std::string& name) {
-  MaskedPicture read = {ReadGrayImage(folder / name), {}};
-  read.mask = masks.Decode(name, masks.Open(name), read.picture.width, read.picture.height);
-  return read;
-}
-
-// An earlier run was interrupted between the rows and the record of them.
-bool IsTiedAlready(const ColmapDatabase& database, const std::set<uint32_t>& ids) {
-  for (const uint32_t id : ids) {
-    const auto fingerprint = FeaturesFingerprint(database, id);
-    if (fingerprint && fingerprint->find(kTiltedMark) != std::string::npos) return true;
-  }
-  return false;
-}
-
-// The groups that these pictures are in now; empty when it is one.
-std::map<uint32_t, uint32_t> GroupsOf(const ColmapDatabase& database,
-                                      const std::set<uint32_t>& ids) {
-  std::map<uint32_t, uint32_t> groups;
-  std::set<uint32_t> different;
-  for (const auto& [id, group] : TiedGroups(database)) {
-    if (ids.count(id) == 0) continue;
-    groups[id] = group;
-    different.insert(group);
-  }
-  if (different.size() < 2) groups.clear();
-  return groups;
-}
-
-int64_t TieAll(TiltedPairsJob job, const std::set<uint32_t>& ids, ColmapDatabase* database) {
-  int64_t num_tied = 0;
-  DatabaseTransaction transaction(database);
-  for (const double tilt_deg : kTiltsDeg) {
-    job.tilt_deg = tilt_deg;
-    job.groups = GroupsOf(*database, ids);
-    if (!job.groups.empty()) num_tied += TieByTiltedViews(job, database);
-  }
-  transaction.Commit();
-  return num_tied;
-}
-
-// What the second chance has not tied either gets a third one: views from above, a tilt after the
-// other, as long as its pictures hang together in more than one group.
-void TieTheRest(const Options& options, const Workspace& workspace, const Stage& second_chance,
-                ColmapDatabase* database, WorkspaceState* state, RunReport* report) {
-  const auto found = ResultIfDone<SecondChance>(*state, second_chance);
-  if (!found || found->untied.empty()) return;
-  const Stage stage = {"tilted_views", kTiltedPairsVersion,
-                       StageFingerprint(second_chance) + found->pictures, ""};
-  std::set<uint32_t> ids;
-  for (const DatabaseImage& image : ReadImages(*database)) {
-    if (found->untied.count(image.name) > 0) ids.insert(image.image_id);
-  }
-  RunStage<int64_t>(state, stage, [&]() -> StageOutput<int64_t> {
-    if (ids.empty() || IsTiedAlready(*database, ids)) return {0, {}};
-    StageTimer timer(report, stage.name);
-    TiltedPairsJob job;
-    job.read = [&, masks = PictureMasks(options.reader.mask_path)](const std::string& name) {
-      return ReadMasked(workspace.images, masks, name);
-    };
-    job.extraction = options.extraction;
-    job.matching = options.matching;
-    job.num_threads = options.run.num_threads;
-    const int64_t num_tied = TieAll(job, ids, database);
-    LogInfo(std::to_string(num_tied) + " pairs of pictures were tied by views from above");
-    return {num_tied, {}};
-  });
-}
-
 CommandResult WriteReport(const Workspace& workspace, const std::vector<ModelSummary>& models,
                           const RunReport& report) {
   const std::string summary = SummaryText(models, report);
@@ -360,10 +197,8 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& giv
           DoneBefore(begin, state), &progress);
   ColmapDatabase database = OpenWorkspaceDatabase(workspace.database, pictures.readable,
                                                   options.reader, begin, inputs, &state);
-  const Stage second_chance = SecondChanceStage(options, begin);
-  ExtractAndMatch(options, workspace, pictures, second_chance, &database, &state, &report);
+  ExtractAndTie(options, workspace, pictures, begin, &database, &state, &report);
   FindMarkersOfDive(options, workspace, &state, &report);
-  TieTheRest(options, workspace, second_chance, &database, &state, &report);
   const Mapping mapping = MapPictures(plan, database, &state);
   report.stages.insert(report.stages.end(), mapping.seconds.begin(), mapping.seconds.end());
   std::vector<ModelSummary> models = ReadModels(mapping.models, &report);
