@@ -135,5 +135,46 @@ TEST_F(ContinuedPart, WhatTheMapperDroppedStays) {
   }
 }
 
+// A picture got SI-SeaPoints behind its own, and a new picture shows one of them.
+TEST_F(ContinuedPart, SeaPointsThatCameBehindCanBeSeen) {
+  constexpr size_t kMore = 3;
+  const auto with_more = [](SparseModel model) {
+    for (PosedImage& image : model.images) {
+      if (image.image_id > 8) continue;
+      for (size_t k = 0; k < kMore; ++k) {
+        image.points2D.emplace_back(10.5 + static_cast<double>(k), 20.5);
+        image.point3D_ids.push_back(kNoPoint3D);
+      }
+    }
+    return model;
+  };
+  const SparseModel part = with_more(part_);
+  SparseModel grown = with_more(grown_);
+  PosedImage& old_one = grown.images[4];
+  PosedImage& new_one = grown.images[5];
+  ASSERT_EQ(new_one.image_id, 9u);
+  const auto idx = static_cast<uint32_t>(old_one.points2D.size() - 2);
+  const auto free = static_cast<uint32_t>(
+      std::find(new_one.point3D_ids.begin(), new_one.point3D_ids.end(), kNoPoint3D) -
+      new_one.point3D_ids.begin());
+  if (free == new_one.points2D.size()) {
+    new_one.points2D.emplace_back(1.5, 1.5);
+    new_one.point3D_ids.push_back(kNoPoint3D);
+  }
+  const uint64_t id = grown.points3D.rbegin()->first + 1;
+  old_one.point3D_ids[idx] = new_one.point3D_ids[free] = id;
+  grown.points3D[id].track = {{8, idx}, {9, free}};
+  SparseModel whole = whole_;
+  PutPartBack(part, grown, &whole);
+  Check(whole);
+  for (size_t i = 0; i < 8; ++i) {
+    const size_t were = whole_.images[i].points2D.size();
+    EXPECT_EQ(whole.images[i].points2D.size(), i < 3 ? were : were + kMore) << i;
+  }
+  const uint64_t taken = whole.images[7].point3D_ids[idx];
+  ASSERT_NE(taken, kNoPoint3D);
+  EXPECT_EQ(whole.points3D.at(taken).track.size(), 2u);
+}
+
 }  // namespace
 }  // namespace colmap_seapoint

@@ -94,6 +94,32 @@ TEST_F(SecondChanceTest, PicturesWithoutSeaPointsDoNotCount) {
   EXPECT_EQ(Find(), Names());
 }
 
+TEST_F(SecondChanceTest, TiesAreGroupsAndWhatLiesBetweenThem) {
+  for (int i = 1; i < 11; ++i) {
+    if (i != 6) Tie(i, i + 1, 35);
+  }
+  Tie(6, 7, 20);
+  WriteFeatures(&database_, ids_[12], Features(), "picture");
+  const TieCount before = CountTies(database_);
+  EXPECT_EQ(before.num_groups, 3u);
+  EXPECT_EQ(before.num_between, 20u);
+  EXPECT_FALSE(TiesMore(before, before));
+  Tie(1, 5, 40);  // in one group already
+  EXPECT_FALSE(TiesMore(CountTies(database_), before));
+  Tie(6, 7, 15);
+  EXPECT_FALSE(TiesMore(CountTies(database_), before));
+  Tie(5, 8, 6);
+  const TieCount more = CountTies(database_);
+  EXPECT_EQ(more.num_between, 21u);
+  EXPECT_TRUE(TiesMore(more, before));
+  Tie(6, 7, 30);
+  const TieCount tied = CountTies(database_);
+  EXPECT_EQ(tied.num_groups, 2u);
+  EXPECT_EQ(tied.num_between, 0u);
+  EXPECT_TRUE(TiesMore(tied, more));
+  EXPECT_FALSE(TiesMore(more, tied));
+}
+
 TEST(SecondChanceOfNothing, IsNobody) {
   TempDir dir;
   const ColmapDatabase database(dir / "empty.db", ColmapDatabase::Mode::kCreateIfMissing);

@@ -166,6 +166,33 @@ TEST_F(Reconstruct, UntiedPicturesGetASecondChanceOnce) {
   EXPECT_EQ(SecondChance(), std::set<std::string>());
 }
 
+// As one of the deck: it is in no model, and nothing else changes.
+TEST_F(Reconstruct, APictureThatNothingTiesChangesNoOther) {
+  const FakeColmapMode continues("continues");
+  RunAutomaticReconstructor(ReconstructorOptions());
+  const auto models = ReadTree(Root() / "sparse"), clouds = ReadTree(Root() / "dense");
+  const auto rows = QueryRows(Root() / "database.db", "SELECT image_id, data FROM keypoints");
+  const auto matches = QueryRows(Root() / "database.db", "SELECT pair_id, data FROM matches");
+  WriteImage(Images() / "img9.png", StripPicture(20));
+  const std::string log = LogOf([&] { RunAutomaticReconstructor(ReconstructorOptions()); });
+  EXPECT_NE(log.find("Nothing ties them"), std::string::npos) << log;
+  EXPECT_NE(log.find("nothing ties the new pictures to the 4"), std::string::npos) << log;
+  EXPECT_TRUE(ReadTree(Root() / "sparse") == models);
+  EXPECT_TRUE(ReadBytes(Root() / "dense/0/fused.ply") == clouds.at("0/fused.ply"));
+  const auto contains = [](const auto& all, const auto& part) {
+    return std::all_of(part.begin(), part.end(), [&](const auto& row) {
+      return std::find(all.begin(), all.end(), row) != all.end();
+    });
+  };
+  EXPECT_TRUE(
+      contains(QueryRows(Root() / "database.db", "SELECT image_id, data FROM keypoints"), rows));
+  EXPECT_TRUE(
+      contains(QueryRows(Root() / "database.db", "SELECT pair_id, data FROM matches"), matches));
+  const std::string again = LogOf([&] { RunAutomaticReconstructor(ReconstructorOptions()); });
+  EXPECT_EQ(again.find("are untied"), std::string::npos) << again;
+  EXPECT_NE(again.find("The models in"), std::string::npos) << again;
+}
+
 TEST_F(Reconstruct, PicturesWithAllLevelsNeedNoSecondChance) {
   WriteImage(Images() / "img9.png", StripPicture(20));
   AutomaticReconstructorOptions options = ReconstructorOptions();
