@@ -1,4 +1,4 @@
-"""run_step.py STEP MISSION DIVE BINARY QUALITY DIGEST DEADLINE
+"""run_step.py STEP MISSION DIVE BINARY QUALITY DIGEST DEADLINE PAUSE_ON_BATTERY
 
 A step of a dive, coarse or full: its workspace, its log, its record, and the page over all. Whatever
 becomes of it, it ends well, since others are to follow; its record tells. At the deadline the
@@ -83,13 +83,18 @@ def environment_of(step):
     return environment
 
 
-def run_program(step, mission, dive, binary, quality, dive_digest, deadline):
+def command_of(step, mission, dive, binary, quality, dive_digest, pause_on_battery):
+    command = (coarse_command(mission, dive, binary, dive_digest) if step == "coarse"
+               else plan.command_of(mission, dive, binary, quality))
+    return command + (["--pause_on_battery", pause_on_battery] if pause_on_battery else [])
+
+
+def run_program(step, mission, dive, binary, quality, dive_digest, deadline, pause_on_battery):
     """Exit code, None where it was stopped; and what went wrong."""
     log_path = dives.result_path(mission, dive, dives.LOGS[step])
     os.makedirs(os.path.dirname(log_path), exist_ok=True)
     try:
-        command = (coarse_command(mission, dive, binary, dive_digest) if step == "coarse"
-                   else plan.command_of(mission, dive, binary, quality))
+        command = command_of(step, mission, dive, binary, quality, dive_digest, pause_on_battery)
         exit_code = run_until(command, log_path, deadline, environment_of(step))
     except Exception as error:  # whatever it is: the other dives are to follow
         return 1, f"{type(error).__name__}: {error}"
@@ -100,7 +105,7 @@ def run_program(step, mission, dive, binary, quality, dive_digest, deadline):
     return exit_code, last_error(log_path) or f"ended with exit code {exit_code}"
 
 
-def run(step, mission, dive, binary, quality, dive_digest, deadline):
+def run(step, mission, dive, binary, quality, dive_digest, deadline, pause_on_battery=""):
     record = {"dive": dive, "digest": dive_digest, "program": dives.checksum(binary),
               "quality": "coarse" if step == "coarse" else quality, "exit_code": None,
               "seconds": None, "ended": 0, "error": "not begun by the deadline"}
@@ -109,7 +114,7 @@ def run(step, mission, dive, binary, quality, dive_digest, deadline):
         share = load.share_to_be_had() if step == "coarse" else 1.0
         began = time.time()
         record["exit_code"], record["error"] = run_program(
-            step, mission, dive, binary, quality, dive_digest, deadline)
+            step, mission, dive, binary, quality, dive_digest, deadline, pause_on_battery)
         record["seconds"] = round(time.time() - began, 1)
         dives.say(mission, f"{dive}: {step} {record['error'] or 'done'} after {record['seconds']} s")
     record["ended"] = int(time.time())

@@ -108,6 +108,15 @@ class Mission(unittest.TestCase):
         self.assertIsNone(dives.outcome(self.mission, "a"))
         self.assertEqual(dives.state(self.mission, "a"), ("coarse", "not begun"))
 
+    def test_a_low_battery_pauses_coarse_and_full_where_it_is_asked_for(self):
+        self.add("a", 1)
+        with open(self.binary, "w", encoding="utf-8") as file:
+            file.write('#!/bin/sh\necho "$*"\n')
+        for step, pause, expected in (("coarse", "20", 1), ("full", "35", 1), ("full", "", 0)):
+            run_step.run(step, self.mission, "a", self.binary, "field", "digest", "never", pause)
+            with open(dives.result_path(self.mission, "a", dives.LOGS[step]), encoding="utf-8") as log:
+                self.assertEqual(log.read().count(f"--pause_on_battery {pause}"), expected)
+
     def test_what_the_deadline_leaves_is_not_begun(self):
         self.add("a", 1)
         self.run_step("full", "a", "after 0")
