@@ -122,6 +122,13 @@ def is_current(result, dive_digest, quality, program):
     return not has_failed(result) and made_of == [dive_digest, quality, program]
 
 
+def last_begun(mission, dive):
+    """The record of the last step that was begun; None where none was."""
+    results = [outcome(mission, dive, step) for step in RECORDS]
+    begun = [result for result in results if result and result.get("seconds") is not None]
+    return begun[-1] if begun else None
+
+
 def state(mission, dive):
     """What there is of a dive, "full", "coarse", "failed" or "not begun"; and why it is not more."""
     results = {step: outcome(mission, dive, step) for step in RECORDS}
@@ -130,10 +137,10 @@ def state(mission, dive):
     reason = (results["full"] or {}).get("error") or "not begun"
     if not has_failed(results["coarse"]):
         return "coarse", reason
-    has_begun = [result for result in results.values() if result and result.get("seconds") is not None]
-    if not has_begun:
+    begun = last_begun(mission, dive)
+    if not begun:
         return "not begun", reason if results["full"] else ""
-    return "failed", has_begun[-1].get("error", "")
+    return "failed", begun.get("error", "")
 
 
 def forget_failed(mission):

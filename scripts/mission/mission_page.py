@@ -43,12 +43,23 @@ def maps_of(results, workspace):
     return found
 
 
+def first_five(lines):
+    return lines[:5] + ([f"and {len(lines) - 5} more"] if len(lines) > 5 else [])
+
+
 def left_out(results, workspace):
     """A line for each thing that the dive's run left out, five at most."""
     report = dives.read_json(os.path.join(results, workspace, "report/run.json")) or {}
-    entries = [f"{entry.get('name')}: {entry.get('reason')}" for entry in report.get("left_out", [])]
-    more = [f"and {len(entries) - 5} more"] if len(entries) > 5 else []
-    return entries[:5] + more
+    return first_five([f"{entry.get('name')}: {entry.get('reason')}"
+                       for entry in report.get("left_out", [])])
+
+
+def why_failed(mission, dive):
+    """What the program warned of before it gave up, and what to do then."""
+    warnings = (dives.last_begun(mission, dive) or {}).get("warnings", [])
+    return [f"<p>{html.escape(line)}</p>" for line in first_five(warnings)] + [
+        "<p>Once that is mended in the dive’s folder, <b>" + html.escape(dive) +
+        "</b>, the same command tries it again; the other dives stay as they are.</p>"]
 
 
 def state_line(mission, dive, what, reason):
@@ -89,6 +100,8 @@ def card(mission, results, dive):
         lines += links(results, dive, dives.WORKSPACES[what], None)
         lines.append(f"<p>{html.escape(result['quality'])}, {duration(result['seconds'])}</p>")
     else:
+        if what == "failed":
+            lines += why_failed(mission, dive)
         lines += links(results, dive, dives.WORKSPACES["full"], dives.LOGS["full"])
     return f'<li class="{what.replace(" ", "-")}">' + "\n".join(lines) + "</li>"
 

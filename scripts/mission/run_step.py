@@ -28,17 +28,13 @@ COARSE_OPTIONS = {
 SECONDS_TO_END = 20  # of a program that was asked to
 
 
-def last_error(log_path):
-    """The last line of a log that begins with "error:", without that."""
-    found = ""
+def said(log_path, beginning):
+    """The lines of a log that begin so, without that."""
     try:
         with open(log_path, encoding="utf-8", errors="replace") as log:
-            for line in log:
-                if line.startswith("error:"):
-                    found = line[len("error:"):].strip()
+            return [line[len(beginning):].strip() for line in log if line.startswith(beginning)]
     except OSError:
-        pass
-    return found
+        return []
 
 
 def coarse_command(mission, dive, binary, dive_digest):
@@ -79,7 +75,7 @@ def environment_of(step):
     """The program learns from its own runs how fast the machine is: not from coarse ones."""
     environment = dict(os.environ)
     if step == "coarse":
-        environment["XDG_CACHE_HOME"] = os.path.join(os.path.dirname(plan.history_path()), "coarse")
+        environment["XDG_CACHE_HOME"] = plan.cache_path("coarse")
     return environment
 
 
@@ -102,7 +98,7 @@ def run_program(step, mission, dive, binary, quality, dive_digest, deadline, pau
         return None, f"stopped at {deadlines.clock(deadline)}, goes on with the same command"
     if exit_code in (0, dives.INCOMPLETE):
         return exit_code, ""
-    return exit_code, last_error(log_path) or f"ended with exit code {exit_code}"
+    return exit_code, (said(log_path, "error:") or [f"ended with exit code {exit_code}"])[-1]
 
 
 def run(step, mission, dive, binary, quality, dive_digest, deadline, pause_on_battery=""):
@@ -111,21 +107,23 @@ def run(step, mission, dive, binary, quality, dive_digest, deadline, pause_on_ba
               "seconds": None, "ended": 0, "error": "not begun by the deadline"}
     if deadlines.seconds_left(deadline) > 0:
         dives.say(mission, f"{dive}: {step} begun")
-        share = load.share_to_be_had() if step == "coarse" else 1.0
-        began = time.time()
+        is_new = not os.path.exists(dives.result_path(mission, dive, dives.WORKSPACES[step]))
+        began, cpu_before = time.time(), load.cpu_seconds_of_all()
         record["exit_code"], record["error"] = run_program(
             step, mission, dive, binary, quality, dive_digest, deadline, pause_on_battery)
+        record["warnings"] = said(dives.result_path(mission, dive, dives.LOGS[step]), "warning:")
         record["seconds"] = round(time.time() - began, 1)
         dives.say(mission, f"{dive}: {step} {record['error'] or 'done'} after {record['seconds']} s")
     record["ended"] = int(time.time())
     dives.write_whole(dives.result_path(mission, dive, dives.RECORDS[step]),
                       json.dumps(record, indent=2) + "\n")
     if not dives.has_failed(record):
-        if step == "coarse":
-            known = plan.estimate(mission, dive, binary, quality) or {}
-            plan.remember_coarse(record["seconds"] - known.get("intake_seconds", 0),
-                                 known.get("pictures", 0), share)
-        else:
+        if is_new:
+            share = load.share_had(record["seconds"], load.cpu_seconds_of_all() - cpu_before,
+                                   load.cpu_seconds_of_children())
+            plan.remember(step, record["seconds"], share,
+                          plan.estimate(mission, dive, binary, quality))
+        if step == "full":
             shutil.rmtree(dives.result_path(mission, dive, "coarse"), ignore_errors=True)
     dives.write_page(mission)
 
