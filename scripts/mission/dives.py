@@ -158,10 +158,11 @@ def write_page(mission):
     write_whole(os.path.join(mission, RESULTS, "mission.html"), mission_page.page(mission))
 
 
-def last_line(path, size):
+def last_line(path):
+    """As a list of one, or of none."""
     try:
         with open(path, "rb") as log:
-            log.seek(max(0, size - 1000))
+            log.seek(max(0, os.fstat(log.fileno()).st_size - 1000))
             lines = log.read().decode("utf-8", "replace").splitlines()
     except OSError:
         lines = []
@@ -198,7 +199,7 @@ def follow(mission):
             continue  # the mission's disk is gone: run_mission.sh says so
         for path, (dive, size) in now.items():
             if size and (dive, size) != before.get(path):
-                for line in last_line(path, size):
+                for line in last_line(path):
                     print(f"{dive}: {line}", file=sys.stderr)
         sys.stderr.flush()
         before = now

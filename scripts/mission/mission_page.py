@@ -23,7 +23,7 @@ li { border: 2px solid #000; border-radius: .4rem; padding: .8rem; break-inside:
 li.failed, li.not-begun { border-style: dashed; }
 li.coarse { border-style: double; border-width: 4px; }
 .state { font-weight: bold; }
-img { width: 100%; height: 15rem; object-fit: contain; background: #eee; margin-top: .5rem; }
+img { width: 100%; height: 15rem; object-fit: contain; margin-top: .5rem; }
 a { color: #00449e; }
 a:focus-visible { outline: 3px solid #000; }
 """
@@ -69,7 +69,8 @@ def state_line(mission, dive, what, reason):
     elif what == "coarse":
         word, text = "Coarse answer.", f"{dives.answer(mission, dive, 'coarse')}. In full: {reason}."
     else:
-        word, text = ("Failed." if what == "failed" else "Not begun."), reason
+        # From the mission on, as the dive's name stands: paths are long on a phone.
+        word, text = ("Failed." if what == "failed" else "Not begun."), reason.replace(mission + "/", "")
     return f'<p><span class="state">{word}</span> {html.escape(text)}</p>'
 
 
@@ -98,20 +99,33 @@ def card(mission, results, dive):
             lines.append(f'<a href="{link(target)}"><img src="{link(picture)}" loading="lazy" '
                          f'alt="Orthomosaic of {html.escape(dive, quote=True)}"></a>')
         lines += links(results, dive, dives.WORKSPACES[what], None)
-        lines.append(f"<p>{html.escape(result['quality'])}, {duration(result['seconds'])}</p>")
+        lines.append(f"<p>Quality: {html.escape(result['quality'])}; it took "
+                     f"{duration(result['seconds'])}.</p>")
     else:
         if what == "failed":
             lines += why_failed(mission, dive)
         lines += links(results, dive, dives.WORKSPACES["full"], dives.LOGS["full"])
-    return f'<li class="{what.replace(" ", "-")}">' + "\n".join(lines) + "</li>"
+    return f'<li id="{anchor(dive)}" class="{what.replace(" ", "-")}">' + "\n".join(lines) + "</li>"
+
+
+def anchor(dive):
+    return html.escape(urllib.parse.quote("dive-" + dive), quote=True)
+
+
+def named(word, names):
+    """Which dives it is true of, with links to their cards; "" where it is none."""
+    links_to = ", ".join(f'<a href="#{anchor(dive)}">{html.escape(dive)}</a>' for dive in names)
+    return f"<p>{word}: {links_to}.</p>\n" if names else ""
 
 
 def page(mission):
     results = os.path.join(mission, dives.RESULTS)
     names = dives.dives(mission)
-    states = [dives.state(mission, dive)[0] for dive in names]
-    num_coarse = states.count("coarse")
-    num_good = states.count("full") + num_coarse
+    states = {dive: dives.state(mission, dive)[0] for dive in names}
+    of_state = {what: [dive for dive in names if states[dive] == what]
+                for what in ("full", "coarse", "failed", "not begun")}
+    num_coarse = len(of_state["coarse"])
+    num_good = len(of_state["full"]) + num_coarse
     title = os.path.basename(os.path.normpath(mission))
     cards = "\n".join(card(mission, results, dive) for dive in names)
     when = time.strftime("%Y-%m-%d %H:%M")
@@ -120,4 +134,5 @@ def page(mission):
             f'<meta name="viewport" content="width=device-width, initial-scale=1">\n'
             f"<title>{html.escape(title)}</title><style>{STYLE}</style></head>\n<body><main>\n"
             f"<h1>{html.escape(title)}</h1>\n<p>{num_good} of {len(names)} dives came out{coarse}. "
-            f"{when}</p>\n<ul>\n{cards}\n</ul>\n</main></body></html>\n")
+            f"{when}</p>\n{named('Failed', of_state['failed'])}"
+            f"{named('Not begun', of_state['not begun'])}<ul>\n{cards}\n</ul>\n</main></body></html>\n")

@@ -125,7 +125,10 @@ def run(step, mission, dive, binary, quality, dive_digest, deadline, pause_on_ba
                           plan.estimate(mission, dive, binary, quality))
         if step == "full":
             shutil.rmtree(dives.result_path(mission, dive, "coarse"), ignore_errors=True)
-    dives.write_page(mission)
+    try:
+        dives.write_page(mission)
+    except Exception as error:  # the dive stands without it; the summary writes it once more
+        dives.say(mission, f"{dive}: the page was not written: {error}")
 
 
 if __name__ == "__main__":

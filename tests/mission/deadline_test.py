@@ -146,8 +146,9 @@ class Mission(unittest.TestCase):
         with open(os.path.join(self.mission, "results/mission.html"), encoding="utf-8") as file:
             page = file.read()
         for text in ("none can be used; copy them once more", "0.jpg is left out: is &lt;empty&gt;",
-                     "the same command tries it again"):
+                     "the same command tries it again", '<p>Failed: <a href="#dive-a">a</a>.</p>'):
             self.assertIn(text, page)
+        self.assertNotIn("Not begun:", page)
 
     def test_what_the_deadline_leaves_is_not_begun(self):
         self.add("a", 1)
