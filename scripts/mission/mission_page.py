@@ -69,8 +69,9 @@ def state_line(mission, dive, what, reason):
     elif what == "coarse":
         word, text = "Coarse answer.", f"{dives.answer(mission, dive, 'coarse')}. In full: {reason}."
     else:
-        # From the mission on, as the dive's name stands: paths are long on a phone.
-        word, text = ("Failed." if what == "failed" else "Not begun."), reason.replace(mission + "/", "")
+        # From the mission's folder on: paths are long on a phone.
+        word = "Failed." if what == "failed" else "Not begun."
+        text = reason.replace(os.path.join(os.path.abspath(mission), ""), "")
     return f'<p><span class="state">{word}</span> {html.escape(text)}</p>'
 
 

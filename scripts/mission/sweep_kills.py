@@ -20,7 +20,7 @@ import time
 import dives
 
 PR_SET_CHILD_SUBREAPER = 36
-SHARE_OF_TIME = 1 / 3  # of the undisturbed run's, within which a kill comes
+SHARE_OF_TIME = 1 / 2  # of the undisturbed run's, within which a kill comes: it has to get on between two
 # Files that tell of the run itself, not of the dive.
 OF_THE_RUN = ("log.txt", "engine.txt", "lock")
 # In others, what tells of the run: its times and its memory; in records of stages also the sums of
