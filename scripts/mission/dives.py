@@ -130,7 +130,8 @@ def last_begun(mission, dive):
 
 
 def state(mission, dive):
-    """What there is of a dive, "full", "coarse", "failed" or "not begun"; and why it is not more."""
+    """What there is of a dive: "full", "coarse", "stopped" by a deadline before there was anything,
+    "failed" or "not begun"; and why it is not more."""
     results = {step: outcome(mission, dive, step) for step in RECORDS}
     if not has_failed(results["full"]):
         return "full", ""
@@ -140,6 +141,8 @@ def state(mission, dive):
     begun = last_begun(mission, dive)
     if not begun:
         return "not begun", reason if results["full"] else ""
+    if begun["exit_code"] is None:
+        return "stopped", begun["error"].removeprefix("stopped ")
     return "failed", begun.get("error", "")
 
 
@@ -228,12 +231,10 @@ def summary(mission):
             print(f"{dive}: {answer(mission, dive)}{left_out}")
         elif what == "coarse":
             print(f"{dive}: COARSE: {answer(mission, dive, 'coarse')} (in full: {reason})")
-        elif what == "failed":
-            print(f"{dive}: FAILED: {reason}")
         else:
-            print(f"{dive}: NOT BEGUN{': ' if reason else ''}{reason}")
+            print(f"{dive}: {what.upper()}{': ' if reason else ''}{reason}")
     print(f"page: {os.path.join(mission, RESULTS, 'mission.html')}")
-    if all(code in ("failed", "not begun") for code in exit_codes):
+    if all(code in ("stopped", "failed", "not begun") for code in exit_codes):
         return 1
     return 0 if all(code == 0 for code in exit_codes) else INCOMPLETE
 

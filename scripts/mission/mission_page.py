@@ -20,7 +20,7 @@ p { margin: .4rem 0; overflow-wrap: anywhere; }
 ul { list-style: none; margin: 1rem 0 0; padding: 0; display: grid; gap: 1rem;
   align-items: start; grid-template-columns: repeat(auto-fill, minmax(min(100%, 21rem), 1fr)); }
 li { border: 2px solid #000; border-radius: .4rem; padding: .8rem; break-inside: avoid; }
-li.failed, li.not-begun { border-style: dashed; }
+li.failed, li.stopped, li.not-begun { border-style: dashed; }
 li.coarse { border-style: double; border-width: 4px; }
 .state { font-weight: bold; }
 img { width: 100%; height: 15rem; object-fit: contain; margin-top: .5rem; }
@@ -70,7 +70,7 @@ def state_line(mission, dive, what, reason):
         word, text = "Coarse answer.", f"{dives.answer(mission, dive, 'coarse')}. In full: {reason}."
     else:
         # From the mission's folder on: paths are long on a phone.
-        word = "Failed." if what == "failed" else "Not begun."
+        word = what.capitalize() + "."
         text = reason.replace(os.path.join(os.path.abspath(mission), ""), "")
     return f'<p><span class="state">{word}</span> {html.escape(text)}</p>'
 
@@ -124,16 +124,17 @@ def page(mission):
     names = dives.dives(mission)
     states = {dive: dives.state(mission, dive)[0] for dive in names}
     of_state = {what: [dive for dive in names if states[dive] == what]
-                for what in ("full", "coarse", "failed", "not begun")}
+                for what in ("full", "coarse", "failed", "stopped", "not begun")}
     num_coarse = len(of_state["coarse"])
     num_good = len(of_state["full"]) + num_coarse
     title = os.path.basename(os.path.normpath(mission))
     cards = "\n".join(card(mission, results, dive) for dive in names)
     when = time.strftime("%Y-%m-%d %H:%M")
     coarse = f", {num_coarse} of them coarse" if num_coarse else ""
+    not_out = "".join(named(what.capitalize(), of_state[what])
+                      for what in ("failed", "stopped", "not begun"))
     return (f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">\n'
             f'<meta name="viewport" content="width=device-width, initial-scale=1">\n'
             f"<title>{html.escape(title)}</title><style>{STYLE}</style></head>\n<body><main>\n"
             f"<h1>{html.escape(title)}</h1>\n<p>{num_good} of {len(names)} dives came out{coarse}. "
-            f"{when}</p>\n{named('Failed', of_state['failed'])}"
-            f"{named('Not begun', of_state['not begun'])}<ul>\n{cards}\n</ul>\n</main></body></html>\n")
+            f"{when}</p>\n{not_out}<ul>\n{cards}\n</ul>\n</main></body></html>\n")

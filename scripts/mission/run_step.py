@@ -108,7 +108,8 @@ def run(step, mission, dive, binary, quality, dive_digest, deadline, pause_on_ba
     if deadlines.seconds_left(deadline) > 0:
         dives.say(mission, f"{dive}: {step} begun")
         is_new = not os.path.exists(dives.result_path(mission, dive, dives.WORKSPACES[step]))
-        began, cpu_before = time.time(), load.cpu_seconds_of_all()
+        share = load.share_to_be_had()
+        began = time.time()
         record["exit_code"], record["error"] = run_program(
             step, mission, dive, binary, quality, dive_digest, deadline, pause_on_battery)
         record["warnings"] = said(dives.result_path(mission, dive, dives.LOGS[step]), "warning:")
@@ -119,9 +120,7 @@ def run(step, mission, dive, binary, quality, dive_digest, deadline, pause_on_ba
                       json.dumps(record, indent=2) + "\n")
     if not dives.has_failed(record):
         if is_new:
-            share = load.share_had(record["seconds"], load.cpu_seconds_of_all() - cpu_before,
-                                   load.cpu_seconds_of_children())
-            plan.remember(step, record["seconds"], share,
+            plan.remember(step, record["seconds"], (share + load.share_to_be_had()) / 2,
                           plan.estimate(mission, dive, binary, quality))
         if step == "full":
             shutil.rmtree(dives.result_path(mission, dive, "coarse"), ignore_errors=True)

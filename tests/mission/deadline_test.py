@@ -77,11 +77,6 @@ class Mission(unittest.TestCase):
             for _ in range(3):
                 plan.remember(step, 8 * expected[step], 0.25, estimated)
             self.assertAlmostEqual(self.told(1.0)[step], 2 * expected[step], delta=0.2)
-        # Two cores or how many there are, ten seconds, all used: a quarter of that by others.
-        of_all = 10 * os.cpu_count()
-        self.assertAlmostEqual(load.share_had(10, of_all, 0.75 * of_all), 0.75)
-        self.assertEqual(load.share_had(10, of_all / 2, of_all / 2), 1)
-        self.assertGreater(load.cpu_seconds_of_all(), 0)
 
     def test_a_step_that_goes_on_tells_nothing_of_how_long_one_takes(self):
         self.add("a", 3)
@@ -149,6 +144,18 @@ class Mission(unittest.TestCase):
                      "the same command tries it again", '<p>Failed: <a href="#dive-a">a</a>.</p>'):
             self.assertIn(text, page)
         self.assertNotIn("Not begun:", page)
+
+    def test_what_the_deadline_stops_before_any_answer_has_not_failed(self):
+        self.add("a", 1)
+        with open(self.binary, "w", encoding="utf-8") as file:
+            file.write("#!/bin/sh\nexec sleep 60\n")
+        self.run_step("coarse", "a", deadline.after_hours(0.5 / 3600))
+        what, reason = dives.state(self.mission, "a")
+        self.assertEqual(what, "stopped")
+        self.assertRegex(reason, "^at ..:.., goes on")
+        with open(os.path.join(self.mission, "results/mission.html"), encoding="utf-8") as page:
+            self.assertIn('<p>Stopped: <a href="#dive-a">a</a>.</p>', page.read())
+        self.assertEqual(dives.summary(self.mission), 1)
 
     def test_what_the_deadline_leaves_is_not_begun(self):
         self.add("a", 1)
