@@ -70,21 +70,24 @@ def state_line(mission, dive, what, reason):
         word, text = "Coarse answer.", f"{dives.answer(mission, dive, 'coarse')}. In full: {reason}."
     else:
         # From the mission's folder on: paths are long on a phone.
-        word = what.capitalize() + "."
+        word = what.capitalize() + ("" if what == "stopped" else ".")
         text = reason.replace(os.path.join(os.path.abspath(mission), ""), "")
     return f'<p><span class="state">{word}</span> {html.escape(text)}</p>'
 
 
-def links(results, dive, workspace, log):
-    """To what there is of report and log."""
+def links(results, dive, paths):
+    """To what there is of those files of a dive, by what they are called."""
     lines = []
-    for name, path in (("Report", workspace + "/report/index.html"),
-                       ("Summary", workspace + "/report/summary.txt"),
-                       ("All that it said", log)):
-        if path and os.path.exists(os.path.join(results, dive, path)):
+    for name, path in paths.items():
+        if os.path.exists(os.path.join(results, dive, path)):
             lines.append(f'<p><a href="{link(os.path.join(dive, path))}">{name} ('
                          f"{html.escape(dive)})</a></p>")
     return lines
+
+
+def reports_of(step):
+    workspace = dives.WORKSPACES[step]
+    return {"Report": workspace + "/report/index.html", "Summary": workspace + "/report/summary.txt"}
 
 
 def card(mission, results, dive):
@@ -99,13 +102,15 @@ def card(mission, results, dive):
             target = full if os.path.exists(os.path.join(results, full)) else picture
             lines.append(f'<a href="{link(target)}"><img src="{link(picture)}" loading="lazy" '
                          f'alt="Orthomosaic of {html.escape(dive, quote=True)}"></a>')
-        lines += links(results, dive, dives.WORKSPACES[what], None)
+        lines += links(results, dive, reports_of(what))
         lines.append(f"<p>Quality: {html.escape(result['quality'])}; it took "
                      f"{duration(result['seconds'])}.</p>")
     else:
         if what == "failed":
             lines += why_failed(mission, dive)
-        lines += links(results, dive, dives.WORKSPACES["full"], dives.LOGS["full"])
+        lines += links(results, dive, {
+            **reports_of("full"), "All that it said": dives.LOGS["full"],
+            "All that the coarse run said": dives.LOGS["coarse"]})
     return f'<li id="{anchor(dive)}" class="{what.replace(" ", "-")}">' + "\n".join(lines) + "</li>"
 
 
