@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# scripts/run_mission.sh [--quality Q] [--hours H | --deadline HH:MM] [--binary FILE] [--jobs N]
-#                        MISSION_DIR
+# scripts/run_mission.sh [--quality Q] [--hours H | --deadline HH:MM] [--pause_on_battery PERCENT]
+#                        [--binary FILE] [--jobs N] MISSION_DIR
 #
 # All dives of a mission, one after another, each from its pictures to cloud, map and report; and
 # MISSION_DIR/results/mission.html, a card a dive. Start it again at any time, after a power cut too:
@@ -13,6 +13,7 @@
 #   --hours H, --deadline HH:MM    when it has to be over. Every dive gets a coarse answer first, from
 #                          smaller pictures; then, the shortest first, its full one. What runs when the
 #                          time is over is stopped, and goes on from there the next time
+#   --pause_on_battery P   work waits while the battery is discharged and holds no more than P per cent
 #   --binary FILE          colmap_seapoint [this checkout's own, built when missing]
 #   --jobs N               so many dives at a time: each takes memory, and most of them one core [1]
 # Exit code: 0 all dives are whole; 3 some are not, or coarse, each named with its reason; 1 none came
@@ -24,13 +25,14 @@ called_from=$PWD
 quality=survey
 binary=
 jobs=1
+pause_on_battery=
 deadline_option=
 deadline_value=
 mission=
 while [ $# -gt 0 ]; do
   case $1 in
     -h | --help) usage; exit 0 ;;
-    --quality | --binary | --jobs | --hours | --deadline)
+    --quality | --binary | --jobs | --hours | --deadline | --pause_on_battery)
       [ $# -ge 2 ] || { usage; echo "$1 needs a value" >&2; exit 2; }
       case $1 in
         --quality)
@@ -45,6 +47,10 @@ while [ $# -gt 0 ]; do
             { echo "--hours $2: give a number of hours" >&2; exit 2; }
           [ -z "$deadline_option" ] || { echo "one of --hours and --deadline" >&2; exit 2; }
           deadline_option=$1 deadline_value=$2 ;;
+        --pause_on_battery)
+          [[ $2 =~ ^(100|[0-9]{1,2})$ ]] ||
+            { echo "--pause_on_battery $2: give per cent, 0 to 100" >&2; exit 2; }
+          pause_on_battery=$2 ;;
         --binary) take_binary "$2" ;;
       esac
       shift 2 ;;
@@ -100,6 +106,7 @@ run_engine() {  # STEP
   set -m
   SEAPOINT_STEP=$1 SEAPOINT_MISSION=$mission SEAPOINT_BINARY=$binary SEAPOINT_QUALITY=$quality \
     SEAPOINT_SCRIPTS=$scripts SEAPOINT_DEADLINE=$deadline \
+    SEAPOINT_PAUSE_ON_BATTERY=$pause_on_battery \
     snakemake --snakefile "$scripts/Snakefile" --directory "$results" --cores "$jobs" \
     --nolock --keep-going --rerun-incomplete --rerun-triggers params --quiet all \
     9>&- >"$results/engine.txt" 2>&1 &

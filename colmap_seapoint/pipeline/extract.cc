@@ -165,7 +165,7 @@ void Finish(const FeatureExtractorOptions& options, const RunReport& report) {
   throw Error(options.image_path,
               "none of its " + std::to_string(report.images_in) + " pictures can be used (" +
                   report.left_out.front().name + ": " + report.left_out.front().reason + ")",
-              "check the pictures");
+              "copy them from the camera's card once more");
 }
 
 }  // namespace

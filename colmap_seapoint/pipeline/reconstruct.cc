@@ -106,7 +106,7 @@ PictureSet ReadPictures(const Options& options, const Workspace& workspace) {
   }
   if (pictures.readable.size() > 1) return pictures;
   throw Error(options.image_path,
-              "holds one picture that can be used, " + pictures.readable.front().name,
+              "holds one picture at most that can be used, " + pictures.readable.front().name,
               "depth takes two pictures at least that show the same place from different points: "
               "add more, which overlap by half or more");
 }

@@ -122,18 +122,28 @@ def is_current(result, dive_digest, quality, program):
     return not has_failed(result) and made_of == [dive_digest, quality, program]
 
 
+def last_begun(mission, dive):
+    """The record of the last step that was begun; None where none was."""
+    results = [outcome(mission, dive, step) for step in RECORDS]
+    begun = [result for result in results if result and result.get("seconds") is not None]
+    return begun[-1] if begun else None
+
+
 def state(mission, dive):
-    """What there is of a dive, "full", "coarse", "failed" or "not begun"; and why it is not more."""
+    """What there is of a dive: "full", "coarse", "stopped" by a deadline before there was anything,
+    "failed" or "not begun"; and why it is not more."""
     results = {step: outcome(mission, dive, step) for step in RECORDS}
     if not has_failed(results["full"]):
         return "full", ""
     reason = (results["full"] or {}).get("error") or "not begun"
     if not has_failed(results["coarse"]):
         return "coarse", reason
-    has_begun = [result for result in results.values() if result and result.get("seconds") is not None]
-    if not has_begun:
+    begun = last_begun(mission, dive)
+    if not begun:
         return "not begun", reason if results["full"] else ""
-    return "failed", has_begun[-1].get("error", "")
+    if begun["exit_code"] is None:
+        return "stopped", begun["error"].removeprefix("stopped ")
+    return "failed", begun.get("error", "")
 
 
 def forget_failed(mission):
@@ -151,10 +161,11 @@ def write_page(mission):
     write_whole(os.path.join(mission, RESULTS, "mission.html"), mission_page.page(mission))
 
 
-def last_line(path, size):
+def last_line(path):
+    """As a list of one, or of none."""
     try:
         with open(path, "rb") as log:
-            log.seek(max(0, size - 1000))
+            log.seek(max(0, os.fstat(log.fileno()).st_size - 1000))
             lines = log.read().decode("utf-8", "replace").splitlines()
     except OSError:
         lines = []
@@ -191,7 +202,7 @@ def follow(mission):
             continue  # the mission's disk is gone: run_mission.sh says so
         for path, (dive, size) in now.items():
             if size and (dive, size) != before.get(path):
-                for line in last_line(path, size):
+                for line in last_line(path):
                     print(f"{dive}: {line}", file=sys.stderr)
         sys.stderr.flush()
         before = now
@@ -220,12 +231,10 @@ def summary(mission):
             print(f"{dive}: {answer(mission, dive)}{left_out}")
         elif what == "coarse":
             print(f"{dive}: COARSE: {answer(mission, dive, 'coarse')} (in full: {reason})")
-        elif what == "failed":
-            print(f"{dive}: FAILED: {reason}")
         else:
-            print(f"{dive}: NOT BEGUN{': ' if reason else ''}{reason}")
+            print(f"{dive}: {what.upper()}{': ' if reason else ''}{reason}")
     print(f"page: {os.path.join(mission, RESULTS, 'mission.html')}")
-    if all(code in ("failed", "not begun") for code in exit_codes):
+    if all(code in ("stopped", "failed", "not begun") for code in exit_codes):
         return 1
     return 0 if all(code == 0 for code in exit_codes) else INCOMPLETE
 

@@ -20,10 +20,10 @@ p { margin: .4rem 0; overflow-wrap: anywhere; }
 ul { list-style: none; margin: 1rem 0 0; padding: 0; display: grid; gap: 1rem;
   align-items: start; grid-template-columns: repeat(auto-fill, minmax(min(100%, 21rem), 1fr)); }
 li { border: 2px solid #000; border-radius: .4rem; padding: .8rem; break-inside: avoid; }
-li.failed, li.not-begun { border-style: dashed; }
+li.failed, li.stopped, li.not-begun { border-style: dashed; }
 li.coarse { border-style: double; border-width: 4px; }
 .state { font-weight: bold; }
-img { width: 100%; height: 15rem; object-fit: contain; background: #eee; margin-top: .5rem; }
+img { width: 100%; height: 15rem; object-fit: contain; margin-top: .5rem; }
 a { color: #00449e; }
 a:focus-visible { outline: 3px solid #000; }
 """
@@ -43,12 +43,23 @@ def maps_of(results, workspace):
     return found
 
 
+def first_five(lines):
+    return lines[:5] + ([f"and {len(lines) - 5} more"] if len(lines) > 5 else [])
+
+
 def left_out(results, workspace):
     """A line for each thing that the dive's run left out, five at most."""
     report = dives.read_json(os.path.join(results, workspace, "report/run.json")) or {}
-    entries = [f"{entry.get('name')}: {entry.get('reason')}" for entry in report.get("left_out", [])]
-    more = [f"and {len(entries) - 5} more"] if len(entries) > 5 else []
-    return entries[:5] + more
+    return first_five([f"{entry.get('name')}: {entry.get('reason')}"
+                       for entry in report.get("left_out", [])])
+
+
+def why_failed(mission, dive):
+    """What the program warned of before it gave up, and what to do then."""
+    warnings = (dives.last_begun(mission, dive) or {}).get("warnings", [])
+    return [f"<p>{html.escape(line)}</p>" for line in first_five(warnings)] + [
+        "<p>Once that is mended in the dive’s folder, <b>" + html.escape(dive) +
+        "</b>, the same command tries it again; the other dives stay as they are.</p>"]
 
 
 def state_line(mission, dive, what, reason):
@@ -58,20 +69,25 @@ def state_line(mission, dive, what, reason):
     elif what == "coarse":
         word, text = "Coarse answer.", f"{dives.answer(mission, dive, 'coarse')}. In full: {reason}."
     else:
-        word, text = ("Failed." if what == "failed" else "Not begun."), reason
+        # From the mission's folder on: paths are long on a phone.
+        word = what.capitalize() + ("" if what == "stopped" else ".")
+        text = reason.replace(os.path.join(os.path.abspath(mission), ""), "")
     return f'<p><span class="state">{word}</span> {html.escape(text)}</p>'
 
 
-def links(results, dive, workspace, log):
-    """To what there is of report and log."""
+def links(results, dive, paths):
+    """To what there is of those files of a dive, by what they are called."""
     lines = []
-    for name, path in (("Report", workspace + "/report/index.html"),
-                       ("Summary", workspace + "/report/summary.txt"),
-                       ("All that it said", log)):
-        if path and os.path.exists(os.path.join(results, dive, path)):
+    for name, path in paths.items():
+        if os.path.exists(os.path.join(results, dive, path)):
             lines.append(f'<p><a href="{link(os.path.join(dive, path))}">{name} ('
                          f"{html.escape(dive)})</a></p>")
     return lines
+
+
+def reports_of(step):
+    workspace = dives.WORKSPACES[step]
+    return {"Report": workspace + "/report/index.html", "Summary": workspace + "/report/summary.txt"}
 
 
 def card(mission, results, dive):
@@ -86,25 +102,44 @@ def card(mission, results, dive):
             target = full if os.path.exists(os.path.join(results, full)) else picture
             lines.append(f'<a href="{link(target)}"><img src="{link(picture)}" loading="lazy" '
                          f'alt="Orthomosaic of {html.escape(dive, quote=True)}"></a>')
-        lines += links(results, dive, dives.WORKSPACES[what], None)
-        lines.append(f"<p>{html.escape(result['quality'])}, {duration(result['seconds'])}</p>")
+        lines += links(results, dive, reports_of(what))
+        lines.append(f"<p>Quality: {html.escape(result['quality'])}; it took "
+                     f"{duration(result['seconds'])}.</p>")
     else:
-        lines += links(results, dive, dives.WORKSPACES["full"], dives.LOGS["full"])
-    return f'<li class="{what.replace(" ", "-")}">' + "\n".join(lines) + "</li>"
+        if what == "failed":
+            lines += why_failed(mission, dive)
+        lines += links(results, dive, {
+            **reports_of("full"), "All that it said": dives.LOGS["full"],
+            "All that the coarse run said": dives.LOGS["coarse"]})
+    return f'<li id="{anchor(dive)}" class="{what.replace(" ", "-")}">' + "\n".join(lines) + "</li>"
+
+
+def anchor(dive):
+    return html.escape(urllib.parse.quote("dive-" + dive), quote=True)
+
+
+def named(word, names):
+    """Which dives it is true of, with links to their cards; "" where it is none."""
+    links_to = ", ".join(f'<a href="#{anchor(dive)}">{html.escape(dive)}</a>' for dive in names)
+    return f"<p>{word}: {links_to}.</p>\n" if names else ""
 
 
 def page(mission):
     results = os.path.join(mission, dives.RESULTS)
     names = dives.dives(mission)
-    states = [dives.state(mission, dive)[0] for dive in names]
-    num_coarse = states.count("coarse")
-    num_good = states.count("full") + num_coarse
+    states = {dive: dives.state(mission, dive)[0] for dive in names}
+    of_state = {what: [dive for dive in names if states[dive] == what]
+                for what in ("full", "coarse", "failed", "stopped", "not begun")}
+    num_coarse = len(of_state["coarse"])
+    num_good = len(of_state["full"]) + num_coarse
     title = os.path.basename(os.path.normpath(mission))
     cards = "\n".join(card(mission, results, dive) for dive in names)
     when = time.strftime("%Y-%m-%d %H:%M")
     coarse = f", {num_coarse} of them coarse" if num_coarse else ""
+    not_out = "".join(named(what.capitalize(), of_state[what])
+                      for what in ("failed", "stopped", "not begun"))
     return (f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">\n'
             f'<meta name="viewport" content="width=device-width, initial-scale=1">\n'
             f"<title>{html.escape(title)}</title><style>{STYLE}</style></head>\n<body><main>\n"
             f"<h1>{html.escape(title)}</h1>\n<p>{num_good} of {len(names)} dives came out{coarse}. "
-            f"{when}</p>\n<ul>\n{cards}\n</ul>\n</main></body></html>\n")
+            f"{when}</p>\n{not_out}<ul>\n{cards}\n</ul>\n</main></body></html>\n")

@@ -18,28 +18,33 @@ import load
 # of each picture.
 COARSE_SECONDS = 4.0
 COARSE_SECONDS_OF_PICTURE = 0.2
-MAX_HISTORY = 20  # steps of missions on this machine
+FULL_SECONDS = 1.0  # of any step, to begin with
+MAX_HISTORY = 20  # of each step
 
 
-def history_path():
+def cache_path(name):
     cache = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
-    return os.path.join(cache, "colmap_seapoint", "coarse_answers.json")
+    return os.path.join(cache, "colmap_seapoint", name)
 
 
-def read_history():
-    known = dives.read_json(history_path())
-    return [one for one in known if isinstance(one, (int, float))] if isinstance(known, list) else []
+def read_history(step):
+    """How much longer than expected that step took in this machine's missions, had nobody else used
+    it; the newest last."""
+    known = dives.read_json(cache_path("missions.json"))
+    ratios = known.get(step) if isinstance(known, dict) else None
+    return [one for one in ratios or [] if isinstance(one, (int, float)) and 0.01 < one < 100]
 
 
-def remember_coarse(seconds, pictures, share):
-    """How long a coarse step took on this machine, of which that share was to be had (load.py); a
-    convenience, done without where it fails."""
-    if pictures < 1:
+def remember(step, seconds, share, estimated):
+    """That a step took so long while that share of the machine was to be had (load.py); a convenience,
+    done without where it fails."""
+    if not estimated:
         return
-    seconds_each = max(0.0, seconds * share - COARSE_SECONDS) / pictures
+    known = {one: read_history(one) for one in dives.RECORDS}
+    ratio = seconds * share / expected_seconds(step, estimated)
+    known[step] = (known[step] + [round(ratio, 4)])[-MAX_HISTORY:]
     try:
-        dives.write_whole(history_path(),
-                          json.dumps((read_history() + [round(seconds_each, 4)])[-MAX_HISTORY:]))
+        dives.write_whole(cache_path("missions.json"), json.dumps(known))
     except OSError:
         pass
 
@@ -61,8 +66,11 @@ def estimate(mission, dive, binary, quality):
     known = dives.read_json(path) or {}
     if known.get("key") == key:
         return known["estimate"]
+    # Without what the program has learnt from its own runs: that counts the load of their time, and
+    # what missions have learnt does not.
     asked = subprocess.run(command_of(mission, dive, binary, quality) + ["--estimate_only", "1"],
-                           stdin=subprocess.DEVNULL, capture_output=True, check=False)
+                           stdin=subprocess.DEVNULL, capture_output=True, check=False,
+                           env=dict(os.environ, XDG_CACHE_HOME=cache_path("of_no_run")))
     try:
         found = json.loads(asked.stdout) if asked.returncode == 0 else None
     except ValueError:
@@ -71,15 +79,20 @@ def estimate(mission, dive, binary, quality):
     return found
 
 
-def seconds_of(step, estimated):
-    """Of a step, by the estimate of its dive, where nobody else uses the machine; 0 for a dive that
-    cannot be read."""
-    if not estimated:
-        return 0.0
+def expected_seconds(step, estimated):
+    """Of a step, by the estimate of its dive, on the machine that the constants were measured on."""
     if step == "full":
-        return estimated["seconds"]
-    each = statistics.median(read_history() + [COARSE_SECONDS_OF_PICTURE])
-    return COARSE_SECONDS + estimated["intake_seconds"] + each * estimated["pictures"]
+        return FULL_SECONDS + estimated["seconds"]
+    return (COARSE_SECONDS + estimated["intake_seconds"] +
+            COARSE_SECONDS_OF_PICTURE * estimated["pictures"])
+
+
+def seconds_of(step, estimated):
+    """On this machine where nobody else uses it; of a dive that cannot be read those that it takes to
+    find that out."""
+    if not estimated:
+        return FULL_SECONDS
+    return expected_seconds(step, estimated) * statistics.median(read_history(step) + [1.0])
 
 
 def order(mission, step, binary, quality):
@@ -106,13 +119,13 @@ def tell(mission, binary, quality, deadline):
     sums, disk = {"coarse": 0.0, "full": 0.0}, 0
     program = dives.checksum(binary)
     names = dives.dives(mission)
-    share = load.share_to_be_had() if deadline != "never" else 1.0
+    share = load.share_to_be_had()
     for dive in names:
         estimated = estimate(mission, dive, binary, quality)
         dive_digest = dives.digest(mission, dive)
         if dives.is_current(dives.outcome(mission, dive), dive_digest, quality, program):
             continue
-        sums["full"] += seconds_of("full", estimated)
+        sums["full"] += seconds_of("full", estimated) / share
         disk += (estimated or {}).get("disk_bytes", 0)
         coarse = dives.outcome(mission, dive, "coarse")
         if deadline != "never" and not dives.is_current(coarse, dive_digest, "coarse", program):
@@ -123,10 +136,10 @@ def tell(mission, binary, quality, deadline):
         left = max(0.0, deadlines.seconds_left(deadline))
         text += (f", after {duration(sums['coarse'])} for a coarse answer of each; "
                  f"{duration(left)} until {deadlines.clock(deadline)}")
-        if share < 0.9:
-            text += f"; others leave {100 * share:.0f} % of this machine"
         if sum(sums.values()) > left:
             text += ": some will stay coarse"
+    if share < 0.9:
+        text += f"; others leave {100 * share:.0f} % of this machine"
     dives.say(mission, f"{text}; disk: up to {disk / 1e9:.1f} GB of "
                        f"{free.f_bavail * free.f_frsize / 1e9:.1f} GB free")
     record = {"coarse_seconds": round(sums["coarse"], 1), "full_seconds": round(sums["full"], 1)}

@@ -1,4 +1,4 @@
-"""run_step.py STEP MISSION DIVE BINARY QUALITY DIGEST DEADLINE
+"""run_step.py STEP MISSION DIVE BINARY QUALITY DIGEST DEADLINE PAUSE_ON_BATTERY
 
 A step of a dive, coarse or full: its workspace, its log, its record, and the page over all. Whatever
 becomes of it, it ends well, since others are to follow; its record tells. At the deadline the
@@ -28,17 +28,13 @@ COARSE_OPTIONS = {
 SECONDS_TO_END = 20  # of a program that was asked to
 
 
-def last_error(log_path):
-    """The last line of a log that begins with "error:", without that."""
-    found = ""
+def said(log_path, beginning):
+    """The lines of a log that begin so, without that."""
     try:
         with open(log_path, encoding="utf-8", errors="replace") as log:
-            for line in log:
-                if line.startswith("error:"):
-                    found = line[len("error:"):].strip()
+            return [line[len(beginning):].strip() for line in log if line.startswith(beginning)]
     except OSError:
-        pass
-    return found
+        return []
 
 
 def coarse_command(mission, dive, binary, dive_digest):
@@ -79,17 +75,22 @@ def environment_of(step):
     """The program learns from its own runs how fast the machine is: not from coarse ones."""
     environment = dict(os.environ)
     if step == "coarse":
-        environment["XDG_CACHE_HOME"] = os.path.join(os.path.dirname(plan.history_path()), "coarse")
+        environment["XDG_CACHE_HOME"] = plan.cache_path("coarse")
     return environment
 
 
-def run_program(step, mission, dive, binary, quality, dive_digest, deadline):
+def command_of(step, mission, dive, binary, quality, dive_digest, pause_on_battery):
+    command = (coarse_command(mission, dive, binary, dive_digest) if step == "coarse"
+               else plan.command_of(mission, dive, binary, quality))
+    return command + (["--pause_on_battery", pause_on_battery] if pause_on_battery else [])
+
+
+def run_program(step, mission, dive, binary, quality, dive_digest, deadline, pause_on_battery):
     """Exit code, None where it was stopped; and what went wrong."""
     log_path = dives.result_path(mission, dive, dives.LOGS[step])
     os.makedirs(os.path.dirname(log_path), exist_ok=True)
     try:
-        command = (coarse_command(mission, dive, binary, dive_digest) if step == "coarse"
-                   else plan.command_of(mission, dive, binary, quality))
+        command = command_of(step, mission, dive, binary, quality, dive_digest, pause_on_battery)
         exit_code = run_until(command, log_path, deadline, environment_of(step))
     except Exception as error:  # whatever it is: the other dives are to follow
         return 1, f"{type(error).__name__}: {error}"
@@ -97,32 +98,36 @@ def run_program(step, mission, dive, binary, quality, dive_digest, deadline):
         return None, f"stopped at {deadlines.clock(deadline)}, goes on with the same command"
     if exit_code in (0, dives.INCOMPLETE):
         return exit_code, ""
-    return exit_code, last_error(log_path) or f"ended with exit code {exit_code}"
+    return exit_code, (said(log_path, "error:") or [f"ended with exit code {exit_code}"])[-1]
 
 
-def run(step, mission, dive, binary, quality, dive_digest, deadline):
+def run(step, mission, dive, binary, quality, dive_digest, deadline, pause_on_battery=""):
     record = {"dive": dive, "digest": dive_digest, "program": dives.checksum(binary),
               "quality": "coarse" if step == "coarse" else quality, "exit_code": None,
               "seconds": None, "ended": 0, "error": "not begun by the deadline"}
     if deadlines.seconds_left(deadline) > 0:
         dives.say(mission, f"{dive}: {step} begun")
-        share = load.share_to_be_had() if step == "coarse" else 1.0
+        is_new = not os.path.exists(dives.result_path(mission, dive, dives.WORKSPACES[step]))
+        share = load.share_to_be_had()
         began = time.time()
         record["exit_code"], record["error"] = run_program(
-            step, mission, dive, binary, quality, dive_digest, deadline)
+            step, mission, dive, binary, quality, dive_digest, deadline, pause_on_battery)
+        record["warnings"] = said(dives.result_path(mission, dive, dives.LOGS[step]), "warning:")
         record["seconds"] = round(time.time() - began, 1)
         dives.say(mission, f"{dive}: {step} {record['error'] or 'done'} after {record['seconds']} s")
     record["ended"] = int(time.time())
     dives.write_whole(dives.result_path(mission, dive, dives.RECORDS[step]),
                       json.dumps(record, indent=2) + "\n")
     if not dives.has_failed(record):
-        if step == "coarse":
-            known = plan.estimate(mission, dive, binary, quality) or {}
-            plan.remember_coarse(record["seconds"] - known.get("intake_seconds", 0),
-                                 known.get("pictures", 0), share)
-        else:
+        if is_new:
+            plan.remember(step, record["seconds"], (share + load.share_to_be_had()) / 2,
+                          plan.estimate(mission, dive, binary, quality))
+        if step == "full":
             shutil.rmtree(dives.result_path(mission, dive, "coarse"), ignore_errors=True)
-    dives.write_page(mission)
+    try:
+        dives.write_page(mission)
+    except Exception as error:  # the dive stands without it; the summary writes it once more
+        dives.say(mission, f"{dive}: the page was not written: {error}")
 
 
 if __name__ == "__main__":

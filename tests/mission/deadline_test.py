@@ -56,19 +56,34 @@ class Mission(unittest.TestCase):
             file.write(PROGRAM)
         os.chmod(self.binary, 0o755)
 
-    def test_others_work_makes_coarse_answers_slower(self):
+    def told(self, share):
+        with unittest.mock.patch.object(load, "share_to_be_had", return_value=share):
+            plan.tell(self.mission, self.binary, "field", deadline.after_hours("1"))
+        told = dives.read_json(os.path.join(self.mission, "results", "estimate.json"))
+        return {"coarse": told["coarse_seconds"], "full": told["full_seconds"]}
+
+    def test_others_work_makes_all_steps_slower(self):
         self.assertTrue(0.02 <= load.share_to_be_had() <= 1)
         self.add("dive", 20)
-        told = {}
-        for share in (1.0, 0.25):
-            with unittest.mock.patch.object(load, "share_to_be_had", return_value=share):
-                plan.tell(self.mission, self.binary, "field", deadline.after_hours("1"))
-            told[share] = dives.read_json(
-                os.path.join(self.mission, "results", "estimate.json"))["coarse_seconds"]
-        self.assertAlmostEqual(told[0.25], 4 * told[1.0], delta=0.2)
-        # What a step took then is remembered as what it takes of a whole machine.
-        plan.remember_coarse(4 * told[1.0], 20, 0.25)
-        self.assertAlmostEqual(plan.read_history()[-1], plan.COARSE_SECONDS_OF_PICTURE, delta=0.01)
+        alone, loaded = self.told(1.0), self.told(0.25)
+        for step in ("coarse", "full"):
+            self.assertAlmostEqual(loaded[step], 4 * alone[step], delta=0.2)
+
+    def test_what_a_step_took_is_remembered_as_of_a_whole_machine(self):
+        self.add("dive", 20)
+        expected = self.told(1.0)
+        estimated = plan.estimate(self.mission, "dive", self.binary, "field")
+        for step in ("coarse", "full"):
+            for _ in range(3):
+                plan.remember(step, 8 * expected[step], 0.25, estimated)
+            self.assertAlmostEqual(self.told(1.0)[step], 2 * expected[step], delta=0.2)
+
+    def test_a_step_that_goes_on_tells_nothing_of_how_long_one_takes(self):
+        self.add("a", 3)
+        self.run_step("coarse", "a", "never")
+        self.assertEqual(len(plan.read_history("coarse")), 1)
+        self.run_step("coarse", "a", "never")
+        self.assertEqual(len(plan.read_history("coarse")), 1)
 
     def add(self, dive, count):
         os.makedirs(os.path.join(self.mission, dive))
@@ -107,6 +122,40 @@ class Mission(unittest.TestCase):
         dives.forget_failed(self.mission)
         self.assertIsNone(dives.outcome(self.mission, "a"))
         self.assertEqual(dives.state(self.mission, "a"), ("coarse", "not begun"))
+
+    def test_a_low_battery_pauses_coarse_and_full_where_it_is_asked_for(self):
+        self.add("a", 1)
+        with open(self.binary, "w", encoding="utf-8") as file:
+            file.write('#!/bin/sh\necho "$*"\n')
+        for step, pause, expected in (("coarse", "20", 1), ("full", "35", 1), ("full", "", 0)):
+            run_step.run(step, self.mission, "a", self.binary, "field", "digest", "never", pause)
+            with open(dives.result_path(self.mission, "a", dives.LOGS[step]), encoding="utf-8") as log:
+                self.assertEqual(log.read().count(f"--pause_on_battery {pause}"), expected)
+
+    def test_a_failed_dive_says_why_and_what_to_do(self):
+        self.add("a", 1)
+        with open(self.binary, "w", encoding="utf-8") as file:
+            file.write("#!/bin/sh\necho 'warning: 0.jpg is left out: is <empty>'\n"
+                       "echo 'error: none can be used; copy them once more'\nexit 1\n")
+        self.run_step("full", "a", "never")
+        with open(os.path.join(self.mission, "results/mission.html"), encoding="utf-8") as file:
+            page = file.read()
+        for text in ("none can be used; copy them once more", "0.jpg is left out: is &lt;empty&gt;",
+                     "the same command tries it again", '<p>Failed: <a href="#dive-a">a</a>.</p>'):
+            self.assertIn(text, page)
+        self.assertNotIn("Not begun:", page)
+
+    def test_what_the_deadline_stops_before_any_answer_has_not_failed(self):
+        self.add("a", 1)
+        with open(self.binary, "w", encoding="utf-8") as file:
+            file.write("#!/bin/sh\nexec sleep 60\n")
+        self.run_step("coarse", "a", deadline.after_hours(0.5 / 3600))
+        what, reason = dives.state(self.mission, "a")
+        self.assertEqual(what, "stopped")
+        self.assertRegex(reason, "^at ..:.., goes on")
+        with open(os.path.join(self.mission, "results/mission.html"), encoding="utf-8") as page:
+            self.assertIn('<p>Stopped: <a href="#dive-a">a</a>.</p>', page.read())
+        self.assertEqual(dives.summary(self.mission), 1)
 
     def test_what_the_deadline_leaves_is_not_begun(self):
         self.add("a", 1)

@@ -53,12 +53,26 @@ said '^tw ö: FAILED: .*min_confidence'
 rm "$mission/tw ö/project.ini"
 run 0 "$mission"
 
+# A battery that runs low makes it wait, and changes nothing else.
+mkdir -p "$folder/power/BAT0"
+for word in type:Battery capacity:15 status:Discharging; do
+  echo "${word#*:}" >"$folder/power/BAT0/${word%:*}"
+done
+rm "$mission/one/images/$(ls "$mission/one/images" | tail -n 1)"
+(until grep -q 'The battery holds 15 %: work pauses' "$mission/results/one/log.txt"; do sleep 0.2; done
+  echo Charging >"$folder/power/BAT0/status") 2>/dev/null &
+charger=$!
+SEAPOINT_POWER_SUPPLY=$folder/power run 0 "$mission" --pause_on_battery 20
+! kill "$charger" 2>/dev/null || fail "no pause"
+grep -q 'work goes on' "$mission/results/one/log.txt" || fail "it did not go on"
+said '^one: 3 of 3 pictures used'
+
 # With time enough a new dive ends as without a deadline, by way of a coarse answer.
 cp -r "$mission/one" "$mission/three"
 run 0 "$mission" --hours 1
 grep -q 'three: coarse done' "$mission/results/log.txt" || fail "no coarse answer came first"
 ! grep -q 'one: coarse' "$mission/results/log.txt" || fail "what is done got a coarse answer"
-said '^three: 4 of 4 pictures used'
+said '^three: 3 of 3 pictures used'
 [ ! -e "$mission/results/three/coarse" ] || fail "the coarse answer was not cleared away"
 
 # The same model in two blocks, once.
@@ -91,6 +105,7 @@ mkdir "$folder/nothing/empty"
 run 1 "$folder/nothing"
 run 2 "$mission" --jobs none
 run 2 "$mission" --hours soon
+run 2 "$mission" --pause_on_battery 101
 run 2 "$mission" --deadline 25:00
 run 1 "$folder/elsewhere"
 said 'no such folder'

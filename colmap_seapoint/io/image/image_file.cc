@@ -225,7 +225,7 @@ std::vector<std::string> ListImages(const std::filesystem::path& image_path) {
                 kinds + ", but " + std::to_string(listing.videos.size()) + " videos",
                 "let automatic_reconstructor take it, which chooses their frames");
   }
-  throw Error(image_path.string(), kinds, "check --image_path");
+  throw Error(image_path.string(), kinds, "put the pictures there, or give another --image_path");
 }
 
 std::vector<std::string> ReadImageList(const std::filesystem::path& list_path) {
