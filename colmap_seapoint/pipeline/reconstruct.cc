@@ -12,6 +12,7 @@
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/cameras/camera_identity.h"
 #include "colmap_seapoint/cameras/exif_focal_length.h"
+#include "colmap_seapoint/disk/job_disk.h"
 #include "colmap_seapoint/estimate/preflight.h"
 #include "colmap_seapoint/georeference/marker_search.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
@@ -325,6 +326,12 @@ void TieTheRest(const Options& options, const Workspace& workspace, const Stage&
   });
 }
 
+// Pictures come in meanwhile where it watches: it waits for room, and does not end.
+WhenShort WhenDiskIsShort(const Options& options) {
+  if (!options.check_disk) return WhenShort::kWarn;
+  return options.watch ? WhenShort::kPause : WhenShort::kStop;
+}
+
 CommandResult WriteReport(const Workspace& workspace, const std::vector<ModelSummary>& models,
                           const RunReport& report) {
   const std::string summary = SummaryText(models, report);
@@ -356,20 +363,26 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& giv
   CheckScaleNames(options.scale, NamesOf(pictures));
   const DatabaseInputs inputs = InputsOfDatabase(options, pictures.readable);
   const Stage begin = DatabaseStage(options, inputs);
-  PlanJob(SizeOf(options, pictures.readable), workspace.root, options.check_disk,
-          DoneBefore(begin, state), &progress);
+  const JobSize size = SizeOf(options, pictures.readable);
+  PlanJob(size, workspace.root, DoneBefore(begin, state), &progress);
+  JobDisk disk(workspace, size, WhenDiskIsShort(options));
+  disk.Begin(JobPart::kDatabase);
   ColmapDatabase database = OpenWorkspaceDatabase(workspace.database, pictures.readable,
                                                   options.reader, begin, inputs, &state);
   const Stage second_chance = SecondChanceStage(options, begin);
   ExtractAndMatch(options, workspace, pictures, second_chance, &database, &state, &report);
   FindMarkersOfDive(options, workspace, &state, &report);
   TieTheRest(options, workspace, second_chance, &database, &state, &report);
+  disk.Begin(JobPart::kModels);
   const Mapping mapping = MapPictures(plan, database, &state);
   report.stages.insert(report.stages.end(), mapping.seconds.begin(), mapping.seconds.end());
   std::vector<ModelSummary> models = ReadModels(mapping.models, &report);
   ScaleModels(options, pictures, workspace, mapping.fingerprint, &state, &models, &report);
+  disk.Begin(JobPart::kClouds);
   DensifyModels(options, workspace, mapping.fingerprint, &database, &state, &models, &report);
+  disk.Begin(JobPart::kMaps);
   MakeMaps(options, workspace, mapping.fingerprint, &state, &models, &report);
+  disk.Begin(JobPart::kReport);
   ReportCompletenessOfModels(options, workspace, mapping.fingerprint, &state, &models, &report);
   RememberJob(&progress);
   return WriteReport(workspace, models, report);

@@ -39,9 +39,12 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
              "make one of two models where verified matches between them can be trusted; 0 where "
              "places look so alike that it joins what does not belong together",
              "ours");
-  table->Add("check_disk", &check_disk,
-             "end before any work where the disk is too small by far; 0 = go on all the same",
-             "ours");
+  table->Add(
+      "check_disk", &check_disk,
+      "end before any work, or before its next step, where the disk has by far less room than "
+      "what is left takes, when nothing that can be made again is left to remove; with "
+      "--watch, wait for room; 0 = go on all the same",
+      "ours");
   table->Add("estimate_only", &estimate_only,
              "say what the job will take in time, disk and memory, as JSON, and do nothing",
              "ours");

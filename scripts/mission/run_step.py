@@ -107,10 +107,10 @@ def run(step, mission, dive, binary, quality, dive_digest, deadline):
     if deadlines.seconds_left(deadline) > 0:
         dives.say(mission, f"{dive}: {step} begun")
         share = load.share_to_be_had() if step == "coarse" else 1.0
-        began = time.time()
+        began = time.monotonic()  # which neither a clock that is set nor a closed lid changes
         record["exit_code"], record["error"] = run_program(
             step, mission, dive, binary, quality, dive_digest, deadline)
-        record["seconds"] = round(time.time() - began, 1)
+        record["seconds"] = round(time.monotonic() - began, 1)
         dives.say(mission, f"{dive}: {step} {record['error'] or 'done'} after {record['seconds']} s")
     record["ended"] = int(time.time())
     dives.write_whole(dives.result_path(mission, dive, dives.RECORDS[step]),
