@@ -55,7 +55,7 @@ colmap_seapoint/adjustment      colmap_seapoint/base colmap_seapoint/adjustment/
 colmap_seapoint/joining         colmap_seapoint/base colmap_seapoint/adjustment colmap_seapoint/adjustment/equations colmap_seapoint/io/colmap
 colmap_seapoint/lens            colmap_seapoint/base colmap_seapoint/adjustment colmap_seapoint/adjustment/equations
 colmap_seapoint/reposing        colmap_seapoint/base colmap_seapoint/io/colmap
-colmap_seapoint/mapping         colmap_seapoint/base colmap_seapoint/tracks colmap_seapoint/joining colmap_seapoint/reposing colmap_seapoint/lens colmap_seapoint/adjustment colmap_seapoint/adjustment/equations colmap_seapoint/remeasuring feature/remeasuring colmap_seapoint/io/files colmap_seapoint/io/colmap colmap_seapoint/io/image
+colmap_seapoint/mapping         colmap_seapoint/base colmap_seapoint/system colmap_seapoint/tracks colmap_seapoint/joining colmap_seapoint/reposing colmap_seapoint/lens colmap_seapoint/adjustment colmap_seapoint/adjustment/equations colmap_seapoint/remeasuring feature/remeasuring colmap_seapoint/io/files colmap_seapoint/io/colmap colmap_seapoint/io/image
 colmap_seapoint/cameras         colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/image
 colmap_seapoint/pictures        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/cameras colmap_seapoint/markers colmap_seapoint/io/* feature feature/* densify densify/*
 colmap_seapoint/frames          colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/image colmap_seapoint/io/video feature feature/*
