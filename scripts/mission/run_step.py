@@ -7,6 +7,7 @@ program is stopped: what it has finished by then is kept, and the next run goes 
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -28,17 +29,30 @@ COARSE_OPTIONS = {
 SECONDS_TO_END = 20  # of a program that was asked to
 
 
-def last_error(log_path):
-    """The last line of a log that begins with "error:", without that."""
-    found = ""
+def lines_of(log_path):
     try:
         with open(log_path, encoding="utf-8", errors="replace") as log:
-            for line in log:
-                if line.startswith("error:"):
-                    found = line[len("error:"):].strip()
+            return [line.strip() for line in log]
     except OSError:
-        pass
-    return found
+        return []
+
+
+def last_error(log_path):
+    """The last line of a log that begins with "error:", without that."""
+    found = [line for line in lines_of(log_path) if line.startswith("error:")]
+    return found[-1][len("error:"):].strip() if found else ""
+
+
+def why_it_failed(exit_code, log_path):
+    if exit_code >= 0:
+        return last_error(log_path) or f"ended with exit code {exit_code}"
+    # It had no time for a last word; the line before says what it was at.
+    said = [line for line in lines_of(log_path) if line]
+    return (f"was killed by signal {-exit_code} ({signal.strsignal(-exit_code)})"
+            + (", by the system for want of memory or by somebody: close other programs"
+               if exit_code == -signal.SIGKILL else "")
+            + "; the same command goes on from there"
+            + (f". Its last line: {said[-1]}" if said else ""))
 
 
 def coarse_command(mission, dive, binary, dive_digest):
@@ -97,7 +111,7 @@ def run_program(step, mission, dive, binary, quality, dive_digest, deadline):
         return None, f"stopped at {deadlines.clock(deadline)}, goes on with the same command"
     if exit_code in (0, dives.INCOMPLETE):
         return exit_code, ""
-    return exit_code, last_error(log_path) or f"ended with exit code {exit_code}"
+    return exit_code, why_it_failed(exit_code, log_path)
 
 
 def run(step, mission, dive, binary, quality, dive_digest, deadline):
