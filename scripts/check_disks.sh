@@ -11,7 +11,7 @@
 #   --seed S       of the moments [1]
 #   --output DIR   for the disk's image and the logs [build/check_disks]
 #   --binary FILE  colmap_seapoint [this checkout's own, built when missing]
-#   OPTION...      of demo_survey generate, in place of --num_strips 1 --images_per_strip 6
+#   OPTION...      of demo_survey generate, in place of a strip of five small pictures
 # Every second time that the disk is filled the run does not watch it (--check_disk 0), and meets the
 # full disk in the middle of a file.
 set -euo pipefail
@@ -37,13 +37,16 @@ while [ $# -gt 0 ]; do
     *) break ;;
   esac
 done
-[ $# -gt 0 ] || set -- --num_strips 1 --images_per_strip 6
+[ $# -gt 0 ] || set -- --num_strips 1 --images_per_strip 5 --width 640 --height 480
 [ "$(id -u)" -eq 0 ] || { echo "loop devices are root's: run this as root" >&2; exit 1; }
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 make_output build/check_disks
 install_packages sqlite3 e2fsprogs
-build demo_survey colmap_seapoint
-[ -n "$binary" ] || binary=$bin/colmap_seapoint
+if [ -z "$binary" ]; then
+  build colmap_seapoint
+  binary=$bin/colmap_seapoint
+fi
+build demo_survey
 folders=()
 make_survey small "$@"
 disk=$output/disk
