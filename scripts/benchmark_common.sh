@@ -1,4 +1,4 @@
-# What the benchmarks and run_mission.sh share; they source it. No program of its own.
+# What the benchmarks, the checks and run_mission.sh share; they source it. No program of its own.
 
 # The comment at the head of the script that was started.
 usage() {
@@ -72,6 +72,22 @@ workspace_images() {  # WORKSPACE
     return
   done
 }
+
+# Everything of a workspace that must not change, one hash a line.
+workspace_sums() (  # WORKSPACE
+  cd "$1"
+  find . -type f \( -name 'fused.ply*' -o -name '*.bin' -o -name '*.cfg' \) | LC_ALL=C sort |
+    xargs sha256sum
+  find . -name pairs.csv | LC_ALL=C sort | while read -r file; do
+    cut -d , -f 1-11,15- "$file" | sha256sum | sed "s|-|$file|"
+  done
+  for table in $(sqlite3 database.db "SELECT name FROM sqlite_master WHERE type = 'table'
+      AND name NOT LIKE 'sqlite_%' ORDER BY name"); do
+    columns=$(sqlite3 database.db "SELECT group_concat('quote(' || name || ')') FROM
+      pragma_table_info('$table') WHERE name NOT LIKE '%hash%' AND name NOT LIKE '%fingerprint%'")
+    sqlite3 database.db "SELECT $columns FROM $table ORDER BY 1" | sha256sum | sed "s|-|$table|"
+  done
+)
 
 # Runs a command, its output into LOG. Sets wall_s, cpu_s (user + system, children included) and
 # peak_mb (the largest process; empty without GNU time), and returns what the command returned.

@@ -9,6 +9,8 @@
 # computed again. Sets: demo, hybrid, rig, 12mp, and, where the evaluation data is there
 # (SEAPOINT_DATA, default ../shared/data), t3 and fountain.
 set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/benchmark_common.sh"
+
 called_from=$PWD
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -89,23 +91,6 @@ run_set() {  # NAME BUILD WORKSPACE
   esac
 }
 
-# Everything of a workspace that must not change, one hash a line.
-fingerprint() {  # WORKSPACE
-  local table column columns file
-  cd "$1"
-  find . -type f \( -name 'fused.ply*' -o -name '*.bin' -o -name '*.cfg' \) | LC_ALL=C sort |
-    xargs sha256sum
-  find . -name pairs.csv | LC_ALL=C sort | while read -r file; do
-    cut -d , -f 1-11,15- "$file" | sha256sum | sed "s|-|$file|"
-  done
-  for table in $(sqlite3 database.db "SELECT name FROM sqlite_master WHERE type = 'table'
-      AND name NOT LIKE 'sqlite_%' ORDER BY name"); do
-    columns=$(sqlite3 database.db "SELECT group_concat('quote(' || name || ')') FROM
-      pragma_table_info('$table') WHERE name NOT LIKE '%hash%' AND name NOT LIKE '%fingerprint%'")
-    sqlite3 database.db "SELECT $columns FROM $table ORDER BY 1" | sha256sum | sed "s|-|$table|"
-  done
-}
-
 failed=0
 for name in ${sets//,/ }; do
   case $name in
@@ -120,7 +105,7 @@ for name in ${sets//,/ }; do
     TIMEFORMAT='%U %S'
     { time run_set "$name" "${!side}" "$workspace" 2>"$workspace.log"; } 2>"$workspace.seconds" ||
       { cat "$workspace.log" >&2; echo "$name: the $side build failed" >&2; exit 1; }
-    (fingerprint "$workspace") >"$workspace.sums"
+    workspace_sums "$workspace" >"$workspace.sums"
   done
   seconds=$(paste -d ' ' "$output/old/$name.seconds" "$output/new/$name.seconds" |
     awk '{printf "%.1f -> %.1f CPU s", $1 + $2, $3 + $4}')

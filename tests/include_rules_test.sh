@@ -40,7 +40,7 @@ densify/completeness/gaps       colmap_seapoint/base densify/completeness/surfac
 densify/completeness            colmap_seapoint/base densify/match densify/completeness/*
 densify/self_check              colmap_seapoint/base densify/completeness densify/completeness/*
 densify                         colmap_seapoint/base densify/*
-colmap_seapoint/estimate        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/files
+colmap_seapoint/estimate        colmap_seapoint/base colmap_seapoint/base/hold colmap_seapoint/system colmap_seapoint/io/files
 colmap_seapoint/markers         colmap_seapoint/base
 colmap_seapoint/georeference    colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/navigation colmap_seapoint/markers
 colmap_seapoint/navigation      colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/navigation colmap_seapoint/georeference colmap_seapoint/pictures
@@ -55,7 +55,7 @@ colmap_seapoint/adjustment      colmap_seapoint/base colmap_seapoint/adjustment/
 colmap_seapoint/joining         colmap_seapoint/base colmap_seapoint/adjustment colmap_seapoint/adjustment/equations colmap_seapoint/io/colmap
 colmap_seapoint/lens            colmap_seapoint/base colmap_seapoint/adjustment colmap_seapoint/adjustment/equations
 colmap_seapoint/reposing        colmap_seapoint/base colmap_seapoint/io/colmap
-colmap_seapoint/mapping         colmap_seapoint/base colmap_seapoint/tracks colmap_seapoint/joining colmap_seapoint/reposing colmap_seapoint/lens colmap_seapoint/adjustment colmap_seapoint/adjustment/equations colmap_seapoint/remeasuring feature/remeasuring colmap_seapoint/io/files colmap_seapoint/io/colmap colmap_seapoint/io/image
+colmap_seapoint/mapping         colmap_seapoint/base colmap_seapoint/system colmap_seapoint/tracks colmap_seapoint/joining colmap_seapoint/reposing colmap_seapoint/lens colmap_seapoint/adjustment colmap_seapoint/adjustment/equations colmap_seapoint/remeasuring feature/remeasuring colmap_seapoint/io/files colmap_seapoint/io/colmap colmap_seapoint/io/image
 colmap_seapoint/cameras         colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/image
 colmap_seapoint/pictures        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/cameras colmap_seapoint/markers colmap_seapoint/io/* feature feature/* densify densify/*
 colmap_seapoint/frames          colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/image colmap_seapoint/io/video feature feature/*
@@ -66,8 +66,9 @@ colmap_seapoint/water           colmap_seapoint/base
 colmap_seapoint/gaps            colmap_seapoint/base colmap_seapoint/io/files densify/completeness densify/completeness/*
 colmap_seapoint/page            colmap_seapoint/base colmap_seapoint/io/files colmap_seapoint/io/image colmap_seapoint/gaps colmap_seapoint/report densify/completeness densify/completeness/*
 colmap_seapoint/workspace       colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/pictures
+colmap_seapoint/disk            colmap_seapoint/base colmap_seapoint/base/hold colmap_seapoint/system colmap_seapoint/estimate colmap_seapoint/workspace
 colmap_seapoint/pipeline/intake colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/pictures colmap_seapoint/frames colmap_seapoint/workspace
-colmap_seapoint/pipeline        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/compare colmap_seapoint/estimate colmap_seapoint/georeference colmap_seapoint/navigation colmap_seapoint/mapping colmap_seapoint/cameras colmap_seapoint/pictures colmap_seapoint/frames colmap_seapoint/pairing colmap_seapoint/report colmap_seapoint/gaps colmap_seapoint/workspace colmap_seapoint/pipeline/intake colmap_seapoint/pipeline/completeness colmap_seapoint/pipeline/orthomosaic colmap_seapoint/pipeline/page colmap_seapoint/orthomosaic colmap_seapoint/orthomosaic/ground feature feature/* densify densify/*
+colmap_seapoint/pipeline        colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/* colmap_seapoint/markers colmap_seapoint/compare colmap_seapoint/estimate colmap_seapoint/georeference colmap_seapoint/navigation colmap_seapoint/mapping colmap_seapoint/cameras colmap_seapoint/pictures colmap_seapoint/frames colmap_seapoint/pairing colmap_seapoint/report colmap_seapoint/gaps colmap_seapoint/workspace colmap_seapoint/disk colmap_seapoint/pipeline/intake colmap_seapoint/pipeline/completeness colmap_seapoint/pipeline/orthomosaic colmap_seapoint/pipeline/page colmap_seapoint/orthomosaic colmap_seapoint/orthomosaic/ground feature feature/* densify densify/*
 colmap_seapoint/pipeline/orthomosaic colmap_seapoint/base colmap_seapoint/system colmap_seapoint/io/* colmap_seapoint/orthomosaic colmap_seapoint/orthomosaic/ground colmap_seapoint/pictures colmap_seapoint/report colmap_seapoint/workspace
 colmap_seapoint/pipeline/completeness colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/gaps colmap_seapoint/orthomosaic/ground colmap_seapoint/pictures colmap_seapoint/pipeline/page colmap_seapoint/workspace densify/completeness densify/completeness/* densify/self_check
 colmap_seapoint/pipeline/page   colmap_seapoint/base colmap_seapoint/io/* colmap_seapoint/gaps colmap_seapoint/page colmap_seapoint/report colmap_seapoint/workspace densify/completeness densify/completeness/*

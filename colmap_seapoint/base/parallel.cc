@@ -71,10 +71,10 @@ class Order {
   // A producing thread's life.
   void Produce() {
     while (const auto index = Next()) {
-      WaitWhilePaused();
       Made made;
       made.is_done = true;
       try {
+        WaitWhilePaused();
         produce_(*index);
       } catch (...) {
         made.error = std::current_exception();
@@ -155,9 +155,14 @@ void ParallelFor(int num_threads, int64_t count, const std::function<void(int64_
   std::exception_ptr error;
   const auto run = [&] {
     for (int64_t i = next++; i < count; i = next++) {
-      WaitWhilePaused();
       try {
+        WaitWhilePaused();
         work(i);
+      } catch (const WorkStopped&) {  // whatever the others have to say
+        next = count;
+        const std::lock_guard<std::mutex> lock(mutex);
+        failed_index = -1;
+        error = std::current_exception();
       } catch (...) {
         const std::lock_guard<std::mutex> lock(mutex);
         if (i >= failed_index) continue;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "colmap_seapoint/base/hold/quiet_thread.h"
+#include "colmap_seapoint/base/hold/work_clock.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -196,8 +197,8 @@ Progress::Progress(const std::string& label, int64_t total, int64_t already_done
       total_(total),
       already_done_(already_done),
       work_(work),
-      start_(Clock::now()),
-      last_line_(start_),
+      start_seconds_(WorkSeconds()),
+      last_line_(Clock::now()),
       last_done_(already_done),
       done_(already_done) {
   if (WorkObserver* const all = observer) all->Begin(work_, label_, total_, already_done_);
@@ -225,7 +226,7 @@ std::string Progress::Line() const {
   std::string line = label_ + numbers;
   const int64_t done_here = done - already_done_;
   if (done_here > 0 && done < total_) {
-    const double left = Seconds(Clock::now() - start_) * static_cast<double>(total_ - done) /
+    const double left = (WorkSeconds() - start_seconds_) * static_cast<double>(total_ - done) /
                         static_cast<double>(done_here);
     line += ", " + DurationText(left) + " left";
   }
@@ -257,13 +258,17 @@ void Progress::Finish() {
   finished_ = true;
   if (WorkObserver* const all = observer) all->End(work_);
   LogInfo(label_ + ": " + std::to_string(total_) + " in " +
-          DurationText(Seconds(Clock::now() - start_)));
+          DurationText(WorkSeconds() - start_seconds_));
 }
 
 Heartbeat::Heartbeat() {
   thread_ = StartWithoutSignals([this] {
     std::unique_lock<std::mutex> lock(mutex_);
-    while (!ended_.wait_for(lock, kBeat, [this] { return is_over_; })) ShowIfSilent();
+    while (!ended_.wait_for(lock, kBeat, [this] { return is_over_; })) {
+      TellWorkClock(Beat::kNow);
+      ShowIfSilent();
+    }
+    TellWorkClock(Beat::kBeatsEnd);
   });
 }
 

@@ -56,7 +56,7 @@ class Progress {
   int64_t already_done_ = 0;
   Work work_;
   bool finished_ = false;
-  Clock::time_point start_;
+  double start_seconds_;  // by the work's clock
   Clock::time_point last_line_;
   int64_t last_done_ = 0;
   std::atomic<int64_t> done_;

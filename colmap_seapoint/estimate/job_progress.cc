@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "colmap_seapoint/base/hold/work_clock.h"
 #include "colmap_seapoint/base/progress.h"
 
 namespace colmap_seapoint {
@@ -13,13 +14,11 @@ constexpr double kMinLineSeconds = 1;
 
 }  // namespace
 
-JobProgress::JobProgress() { SetWorkObserver(this); }
+JobProgress::JobProgress() : start_seconds_(WorkSeconds()) { SetWorkObserver(this); }
 
 JobProgress::~JobProgress() { SetWorkObserver(nullptr); }
 
-double JobProgress::Now() const {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-}
+double JobProgress::Now() const { return WorkSeconds() - start_seconds_; }
 
 double JobProgress::Plan(const OfWork<WorkCost>& costs, const OfWork<bool>& done_before) {
   std::lock_guard<std::mutex> lock(mutex_);

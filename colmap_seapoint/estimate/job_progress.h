@@ -2,7 +2,6 @@
 // of all, one time left for all (ours).
 #pragma once
 
-#include <chrono>
 #include <mutex>
 #include <string>
 
@@ -31,9 +30,9 @@ class JobProgress : public WorkObserver {
   OfWork<double> Ratios();  // JobEstimate::Ratios()
 
  private:
-  double Now() const;
+  double Now() const;  // by the work's clock (base/hold/work_clock.h), since the job began
 
-  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  const double start_seconds_;
   std::mutex mutex_;  // guards all below
   JobEstimate estimate_;
   std::string label_;  // of the part that has begun last

@@ -1,7 +1,5 @@
 #include "colmap_seapoint/estimate/needs.h"
 
-#include <sys/statvfs.h>
-
 #include <algorithm>
 #include <cmath>
 #include <system_error>
@@ -31,41 +29,52 @@ constexpr double kSamplesOfPicture = 0.75e6;
 constexpr double kNewSamples = 0.5;  // of a picture's, that are not known from others
 constexpr double kLeastShare = 0.3;  // that a job took of what is expected
 
+double PixelsOfPicture(const JobSize& size) {
+  return 1e6 * size.megapixels / std::max(static_cast<double>(size.num_pictures), 1.0);
+}
+
 }  // namespace
 
-Needs ExpectedNeeds(const JobSize& size) {
+DiskNeeds ExpectedDiskNeeds(const JobSize& size) {
   const auto n = static_cast<double>(size.num_pictures);
-  const double pixels = 1e6 * size.megapixels / std::max(n, 1.0);
+  const double pixels = PixelsOfPicture(size);
   const double samples =
       size.step > 0 ? pixels / (size.step * size.step) : std::min(pixels, kSamplesOfPicture);
-  const double maps = (size.writes_maps ? kMapPixel * pixels : 0) +
-                      (size.makes_map ? kOrthomosaicPixel * pixels : 0);
-  Needs needs;
-  needs.disk_bytes = static_cast<uint64_t>(n * (kDatabases * kDatabaseOfPicture + kModelsOfPicture +
-                                                kNewSamples * samples * kCloudPoint + maps));
-  needs.memory_bytes = static_cast<uint64_t>(kMemoryOfProgram +
-                                             kMemoryOfPicture * std::min(n, kMostPicturesInMemory) +
-                                             kMemoryOfMegapixel * 1e-6 * pixels);
+  const double cloud =
+      kNewSamples * samples * kCloudPoint + (size.writes_maps ? kMapPixel * pixels : 0);
+  DiskNeeds needs;
+  needs.database_bytes = static_cast<uint64_t>(n * kDatabaseOfPicture);
+  needs.model_bytes =
+      static_cast<uint64_t>(n * ((kDatabases - 1) * kDatabaseOfPicture + kModelsOfPicture));
+  needs.cloud_bytes = static_cast<uint64_t>(n * cloud);
+  needs.map_bytes = static_cast<uint64_t>(size.makes_map ? n * kOrthomosaicPixel * pixels : 0);
   return needs;
 }
 
-std::optional<uint64_t> FreeDiskBytes(const fs::path& path) {
-  std::error_code error;
-  fs::path there = fs::absolute(path, error);
-  while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
-  struct statvfs disk {};
-  if (statvfs(there.c_str(), &disk) != 0) return std::nullopt;
-  return static_cast<uint64_t>(disk.f_bavail) * disk.f_frsize;
+Needs ExpectedNeeds(const JobSize& size) {
+  const DiskNeeds disk = ExpectedDiskNeeds(size);
+  const auto n = static_cast<double>(size.num_pictures);
+  Needs needs;
+  needs.disk_bytes = disk.database_bytes + disk.model_bytes + disk.cloud_bytes + disk.map_bytes;
+  needs.memory_bytes = static_cast<uint64_t>(kMemoryOfProgram +
+                                             kMemoryOfPicture * std::min(n, kMostPicturesInMemory) +
+                                             kMemoryOfMegapixel * 1e-6 * PixelsOfPicture(size));
+  return needs;
 }
 
 uint64_t FolderBytes(const fs::path& path) {
-  uint64_t bytes = 0;
   std::error_code error;
-  for (fs::recursive_directory_iterator entry(path, error), end; !error && entry != end;
+  const fs::file_status status = fs::status(path, error);
+  if (fs::is_regular_file(status)) {
+    const uint64_t bytes = fs::file_size(path, error);
+    return error ? 0 : bytes;
+  }
+  uint64_t bytes = 0;
+  for (fs::directory_iterator entry(path, error), end; !error && entry != end;
        entry.increment(error)) {
-    std::error_code of_file;
-    const auto size = entry->is_regular_file(of_file) ? entry->file_size(of_file) : 0;
-    if (!of_file) bytes += size;
+    const bool is_link = entry->is_symlink(error);
+    if (!is_link) bytes += FolderBytes(entry->path());
+    error.clear();
   }
   return bytes;
 }

@@ -10,8 +10,14 @@
 
 namespace colmap_seapoint {
 
+// Of the workspace when all is done, and of what is made meanwhile, by what takes it.
+struct DiskNeeds {
+  uint64_t database_bytes = 0, model_bytes = 0, cloud_bytes = 0, map_bytes = 0;
+};
+DiskNeeds ExpectedDiskNeeds(const JobSize& size);
+
 struct Needs {
-  uint64_t disk_bytes = 0;    // of the workspace when all is done, and of what is made meanwhile
+  uint64_t disk_bytes = 0;    // all of DiskNeeds
   uint64_t memory_bytes = 0;  // at most at a time, the mapper included
 };
 
@@ -25,9 +31,8 @@ struct Supply {
   uint64_t memory_bytes = 0;           // that the job may take
 };
 
-// Of what is there of `path`, or of the nearest folder above it; nullopt: the system does not tell.
-std::optional<uint64_t> FreeDiskBytes(const std::filesystem::path& path);
-// Of all files below it; 0 when there is no such folder.
+// Of all files below it, or of the file itself; 0 when there is no such thing. What others remove
+// meanwhile does not count, and hides nothing else. Links in it are not followed.
 uint64_t FolderBytes(const std::filesystem::path& path);
 
 // Two lines: "12 pictures, 17 megapixels; disk: 240.0 MB of 15.0 GB free; memory: 230.0 MB of 3.0

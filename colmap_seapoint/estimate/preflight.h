@@ -11,9 +11,8 @@ namespace colmap_seapoint {
 // The costs on this machine, by its history.
 OfWork<WorkCost> CostsHere(const JobSize& size);
 
-// Where the disk of `workspace` is too small by far: an Error if `check_disk`, else a warning, as
-// where it may be too small.
-void PlanJob(const JobSize& size, const std::filesystem::path& workspace, bool check_disk,
+// Whether the disk of `workspace` is large enough is judged elsewhere (disk/job_disk.h).
+void PlanJob(const JobSize& size, const std::filesystem::path& workspace,
              const OfWork<bool>& done_before, JobProgress* progress);
 
 // Remembers how long each kind of work took on this machine, for later runs.

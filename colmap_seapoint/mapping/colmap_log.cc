@@ -1,12 +1,17 @@
 #include "colmap_seapoint/mapping/colmap_log.h"
 
 #include <cctype>
+#include <cstdint>
+
+#include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/system/free_disk.h"
 
 namespace colmap_seapoint {
 namespace {
 
 constexpr char kEscape = '\033';
 constexpr size_t kDateDigits = 8;
+constexpr uint64_t kFullDiskBytes = 1 << 20;  // of what may still be filled
 
 bool BeginsWith(const std::string& text, const char* beginning) {
   return text.rfind(beginning, 0) == 0;
@@ -44,6 +49,20 @@ std::string Trimmed(const std::string& text) {
   return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
 }
 
+struct OutsideCause {
+  std::string cause, remedy;  // "": the fault is its own
+};
+
+OutsideCause FindOutsideCause(const FailedRun& run) {
+  if (run.says_that_memory_ran_out) return {"there was no memory for it", "close other programs"};
+  if (run.end.WasEndedByOthers()) {
+    return {"the system ended it for want of memory, or somebody did", "close other programs"};
+  }
+  const auto free_bytes = FreeDiskBytes(run.output_path);
+  if (!free_bytes || *free_bytes >= kFullDiskBytes) return {};
+  return {"the disk of " + run.output_path.string() + " is full", "make room there"};
+}
+
 }  // namespace
 
 std::string MessageOf(const std::string& line) {
@@ -66,6 +85,19 @@ bool SaysThatThereIsNoModel(const std::string& message) {
 
 bool SaysThatAnOptionIsRefused(const std::string& message) {
   return Contains(message, "parse options") || Contains(message, "Invalid options");
+}
+
+bool SaysThatMemoryRanOut(const std::string& message) {
+  return Contains(message, "bad_alloc") || Contains(message, "annot allocate memory") ||
+         Contains(message, "ut of memory");
+}
+
+void ThrowIfFromOutside(const FailedRun& run) {
+  const OutsideCause outside = FindOutsideCause(run);
+  if (outside.cause.empty()) return;
+  throw Error(run.program.string(), run.finding + ": " + outside.cause,
+              outside.remedy + " and run the same command again, which goes on from there; its " +
+                  "output is in " + run.log_path.string());
 }
 
 }  // namespace colmap_seapoint

@@ -67,11 +67,12 @@ MapperEnd RunMapperProcess(const ColmapProgram& colmap, const MapperCall& call) 
   Progress progress("Pictures registered by colmap mapper", static_cast<int64_t>(call.num_pictures),
                     0, Work::kRegistration);
   std::string last_message;
-  bool says_no_model = false;
+  bool says_no_model = false, says_no_memory = false;
   const auto read_line = [&](const std::string& line) {
     const std::string message = MessageOf(line);
     if (!message.empty()) last_message = message;
     says_no_model = says_no_model || SaysThatThereIsNoModel(message);
+    says_no_memory = says_no_memory || SaysThatMemoryRanOut(message);
     if (const auto count = NumRegistered(message)) progress.Update(*count);
   };
   const SubprocessResult result = RunSubprocess(colmap.path, Arguments(colmap, call), call.log_path,
@@ -86,6 +87,8 @@ MapperEnd RunMapperProcess(const ColmapProgram& colmap, const MapperCall& call) 
   end.is_usable = result.signal_number == 0 && (result.exit_code == 0 || found_none);
   if (end.is_usable) return end;
   const std::string finding = "the mapper failed (" + end.text + ")";
+  ThrowIfFromOutside(
+      {result, says_no_memory, colmap.path, call.output_path, call.log_path, finding});
   if (call.must_succeed) {
     throw Error(colmap.path.string(), finding,
                 "read its output in " + call.log_path.string() + " and run the same command again");

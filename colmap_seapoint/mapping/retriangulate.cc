@@ -7,6 +7,7 @@
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
 #include "colmap_seapoint/io/files/subprocess.h"
+#include "colmap_seapoint/mapping/colmap_log.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -88,7 +89,9 @@ Triangulation Retriangulate(const ColmapProgram& colmap, const TriangulationJob&
   fs::create_directories(output);
   const fs::path log = job.log_path.string() + "_triangulation.log";
   Triangulation result;
+  bool says_no_memory = false;
   const auto read_line = [&](const std::string& line) {
+    says_no_memory = says_no_memory || SaysThatMemoryRanOut(line);
     if (SaysNothingToAdjust(line)) result.fault = "no point was found";
   };
   const auto run = RunSubprocess(colmap.path, Arguments(colmap, job, folder, output), log,
@@ -100,6 +103,7 @@ Triangulation Retriangulate(const ColmapProgram& colmap, const TriangulationJob&
   if (!result.model) {
     result.has_failed = true;
     result.fault = "the triangulation failed (" + failure + ")";
+    ThrowIfFromOutside({run, says_no_memory, colmap.path, folder, log, result.fault});
     ReportFailure(colmap, job, log, result.fault);
     return result;
   }

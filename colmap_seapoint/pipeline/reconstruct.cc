@@ -12,6 +12,7 @@
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/cameras/camera_identity.h"
 #include "colmap_seapoint/cameras/exif_focal_length.h"
+#include "colmap_seapoint/disk/job_disk.h"
 #include "colmap_seapoint/estimate/preflight.h"
 #include "colmap_seapoint/georeference/marker_search.h"
 #include "colmap_seapoint/io/colmap/colmap_model.h"
@@ -162,6 +163,12 @@ void ScaleModels(const Options& options, const PictureSet& pictures, const Works
   }
 }
 
+// Pictures come in meanwhile where it watches: it waits for room, and does not end.
+WhenShort WhenDiskIsShort(const Options& options) {
+  if (!options.check_disk) return WhenShort::kWarn;
+  return options.watch ? WhenShort::kPause : WhenShort::kStop;
+}
+
 CommandResult WriteReport(const Workspace& workspace, const std::vector<ModelSummary>& models,
                           const RunReport& report) {
   const std::string summary = SummaryText(models, report);
@@ -193,18 +200,24 @@ CommandResult RunAutomaticReconstructor(const AutomaticReconstructorOptions& giv
   CheckScaleNames(options.scale, NamesOf(pictures));
   const DatabaseInputs inputs = InputsOfDatabase(options, pictures.readable);
   const Stage begin = DatabaseStage(options, inputs);
-  PlanJob(SizeOf(options, pictures.readable), workspace.root, options.check_disk,
-          DoneBefore(begin, state), &progress);
+  const JobSize size = SizeOf(options, pictures.readable);
+  PlanJob(size, workspace.root, DoneBefore(begin, state), &progress);
+  JobDisk disk(workspace, size, WhenDiskIsShort(options));
+  disk.Begin(JobPart::kDatabase);
   ColmapDatabase database = OpenWorkspaceDatabase(workspace.database, pictures.readable,
                                                   options.reader, begin, inputs, &state);
   ExtractAndTie(options, workspace, pictures, begin, &database, &state, &report);
   FindMarkersOfDive(options, workspace, &state, &report);
+  disk.Begin(JobPart::kModels);
   const Mapping mapping = MapPictures(plan, database, &state);
   report.stages.insert(report.stages.end(), mapping.seconds.begin(), mapping.seconds.end());
   std::vector<ModelSummary> models = ReadModels(mapping.models, &report);
   ScaleModels(options, pictures, workspace, mapping.fingerprint, &state, &models, &report);
+  disk.Begin(JobPart::kClouds);
   DensifyModels(options, workspace, mapping.fingerprint, &database, &state, &models, &report);
+  disk.Begin(JobPart::kMaps);
   MakeMaps(options, workspace, mapping.fingerprint, &state, &models, &report);
+  disk.Begin(JobPart::kReport);
   ReportCompletenessOfModels(options, workspace, mapping.fingerprint, &state, &models, &report);
   RememberJob(&progress);
   return WriteReport(workspace, models, report);

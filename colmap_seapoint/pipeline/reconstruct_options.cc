@@ -39,12 +39,6 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
              "make one of two models where verified matches between them can be trusted; 0 where "
              "places look so alike that it joins what does not belong together",
              "ours");
-  table->Add("check_disk", &check_disk,
-             "end before any work where the disk is too small by far; 0 = go on all the same",
-             "ours");
-  table->Add("estimate_only", &estimate_only,
-             "say what the job will take in time, disk and memory, as JSON, and do nothing",
-             "ours");
   BindField(table);
   table->Add("map", &makes_map,
              "make relief and orthomosaic of every model, in map/; 0 = none, and those of earlier "
@@ -69,8 +63,17 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
   table->MarkOutput("workspace_path");
 }
 
-// On a boat: a battery, pictures that are still coming.
+// On a boat: a disk, a battery, pictures that are still coming.
 void AutomaticReconstructorOptions::BindField(OptionTable* table) {
+  table->Add(
+      "check_disk", &check_disk,
+      "end before any work, or before its next step, where the disk has by far less room than "
+      "what is left takes, when nothing that can be made again is left to remove; with "
+      "--watch, wait for room; 0 = go on all the same",
+      "ours");
+  table->Add("estimate_only", &estimate_only,
+             "say what the job will take in time, disk and memory, as JSON, and do nothing",
+             "ours");
   table->Add("pause_on_battery", &pause_on_battery,
              "work pauses while the battery is discharged and holds so many per cent or less, and "
              "goes on when the machine has power again; 0 = never",

@@ -94,11 +94,11 @@ void BatteryGuard::Watch(double percent, double seconds_between_looks) {
                  "machine is on mains (--pause_on_battery " + PercentText(percent) + ")");
     }
     if (!is_low && is_paused) LogInfo("The machine has power again: work goes on");
-    if (is_low != is_paused) SetWorkPaused(is_low);
+    if (is_low != is_paused) SetWorkPaused(PauseReason::kBattery, is_low);
     is_paused = is_low;
     ended_.wait_for(lock, pause, [this] { return is_over_; });
   }
-  if (is_paused) SetWorkPaused(false);
+  if (is_paused) SetWorkPaused(PauseReason::kBattery, false);
 }
 
 }  // namespace colmap_seapoint

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/hold/work_pause.h"
 #include "colmap_seapoint/system/system_error.h"
 
 namespace colmap_seapoint {
@@ -24,7 +25,8 @@ bool IsOutOfMemory(const std::exception& error) {
 
 std::string FailureLine(const std::exception& error) {
   if (dynamic_cast<const Error*>(&error) != nullptr ||
-      dynamic_cast<const UsageError*>(&error) != nullptr) {
+      dynamic_cast<const UsageError*>(&error) != nullptr ||
+      dynamic_cast<const WorkStopped*>(&error) != nullptr) {
     return error.what();
   }
   if (IsOutOfMemory(error)) return kNoMemory;

@@ -29,7 +29,6 @@ AutomaticReconstructorOptions LiveOptions(AutomaticReconstructorOptions options,
   options.image_path = folders.images.string();
   options.workspace_path = folders.root.string();
   options.quality = "field";
-  options.check_disk = false;
   options.extraction.min_num_features = 600;
   options.extraction.max_num_features = 800;
   options.extraction.descriptor = SeaPointExtractionOptions().descriptor;

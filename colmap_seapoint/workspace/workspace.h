@@ -23,8 +23,8 @@ struct Workspace {
   // What the chain makes directly in the root: checked, and made ours, before anything else is
   // done. The database's are there while it is begun anew, those of sparse while the mapper runs.
   std::vector<std::string> Names() const {
-    return {"database.db", "database.db.tmp",   "sparse", "sparse.tmp", "sparse_scaled", "dense",
-            "map",         "found_markers.csv", "report"};
+    return {"database.db",   "database.db.tmp", "sparse", "sparse.tmp",        "sparse.tmp.db",
+            "sparse_scaled", "dense",           "map",    "found_markers.csv", "report"};
   }
 
   std::filesystem::path images, root, database, sparse, scaled, dense, maps, markers, report;

@@ -7,6 +7,7 @@ program is stopped: what it has finished by then is kept, and the next run goes 
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -28,13 +29,29 @@ COARSE_OPTIONS = {
 SECONDS_TO_END = 20  # of a program that was asked to
 
 
-def said(log_path, beginning):
-    """The lines of a log that begin so, without that."""
+def lines_of(log_path):
     try:
         with open(log_path, encoding="utf-8", errors="replace") as log:
-            return [line[len(beginning):].strip() for line in log if line.startswith(beginning)]
+            return [line.strip() for line in log]
     except OSError:
         return []
+
+
+def said(log_path, beginning):
+    """The lines of a log that begin so, without that."""
+    return [line[len(beginning):].strip() for line in lines_of(log_path) if line.startswith(beginning)]
+
+
+def why_it_failed(exit_code, log_path):
+    if exit_code >= 0:
+        return (said(log_path, "error:") or [f"ended with exit code {exit_code}"])[-1]
+    # It had no time for a last word; the line before says what it was at.
+    lines = [line for line in lines_of(log_path) if line]
+    return (f"was killed by signal {-exit_code} ({signal.strsignal(-exit_code)})"
+            + (", by the system for want of memory or by somebody: close other programs"
+               if exit_code == -signal.SIGKILL else "")
+            + "; the same command goes on from there"
+            + (f". Its last line: {lines[-1]}" if lines else ""))
 
 
 def coarse_command(mission, dive, binary, dive_digest):
@@ -98,7 +115,7 @@ def run_program(step, mission, dive, binary, quality, dive_digest, deadline, pau
         return None, f"stopped at {deadlines.clock(deadline)}, goes on with the same command"
     if exit_code in (0, dives.INCOMPLETE):
         return exit_code, ""
-    return exit_code, (said(log_path, "error:") or [f"ended with exit code {exit_code}"])[-1]
+    return exit_code, why_it_failed(exit_code, log_path)
 
 
 def run(step, mission, dive, binary, quality, dive_digest, deadline, pause_on_battery=""):
@@ -109,11 +126,11 @@ def run(step, mission, dive, binary, quality, dive_digest, deadline, pause_on_ba
         dives.say(mission, f"{dive}: {step} begun")
         is_new = not os.path.exists(dives.result_path(mission, dive, dives.WORKSPACES[step]))
         share = load.share_to_be_had()
-        began = time.time()
+        began = time.monotonic()  # which neither a clock that is set nor a closed lid changes
         record["exit_code"], record["error"] = run_program(
             step, mission, dive, binary, quality, dive_digest, deadline, pause_on_battery)
         record["warnings"] = said(dives.result_path(mission, dive, dives.LOGS[step]), "warning:")
-        record["seconds"] = round(time.time() - began, 1)
+        record["seconds"] = round(time.monotonic() - began, 1)
         dives.say(mission, f"{dive}: {step} {record['error'] or 'done'} after {record['seconds']} s")
     record["ended"] = int(time.time())
     dives.write_whole(dives.result_path(mission, dive, dives.RECORDS[step]),

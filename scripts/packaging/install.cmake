@@ -52,7 +52,7 @@ set(exported_targets
   seapoint_map_ground seapoint_map_relief seapoint_map_sources seapoint_orthomosaic
   seapoint_tracks seapoint_adjustment seapoint_lens seapoint_reposing seapoint_remeasuring
   seapoint_mapping seapoint_cameras seapoint_pictures seapoint_frames seapoint_joining seapoint_pairing
-  seapoint_workspace seapoint_gaps seapoint_page seapoint_intake seapoint_report
+  seapoint_workspace seapoint_disk seapoint_gaps seapoint_page seapoint_intake seapoint_report
   seapoint_pipeline_completeness seapoint_pipeline_orthomosaic seapoint_pipeline_page
   seapoint_pipeline)
 foreach(target IN LISTS exported_targets)

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 
 namespace colmap_seapoint {
 namespace {
@@ -57,11 +58,30 @@ TEST(JudgeDisk, CountsWhatIsThereAlready) {
   EXPECT_EQ(JudgeDisk(needs, {std::nullopt, 0, 0}), DiskVerdict::kEnough);
 }
 
-TEST(FreeDiskBytes, OfTheNearestFolderThatIsThere) {
-  const auto folder = std::filesystem::temp_directory_path();
-  EXPECT_GT(FreeDiskBytes(folder), 0u);
-  EXPECT_GT(FreeDiskBytes(folder / "not" / "there" / "yet"), 0u);
-  EXPECT_EQ(FolderBytes(folder / "not_there_at_all"), 0u);
+TEST(FolderBytes, OfAllThatIsThere) {
+  const auto folder = std::filesystem::temp_directory_path() / "folder_bytes_test";
+  std::filesystem::remove_all(folder);
+  EXPECT_EQ(FolderBytes(folder), 0u);
+  std::filesystem::create_directories(folder / "a" / "b");
+  std::ofstream(folder / "a" / "b" / "file") << "1234567";
+  std::ofstream(folder / "file") << "123";
+  std::filesystem::create_directory_symlink(folder, folder / "a" / "link");
+  EXPECT_EQ(FolderBytes(folder), 10u);
+  EXPECT_EQ(FolderBytes(folder / "file"), 3u);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Needs, AreTheSumOfTheDisksParts) {
+  JobSize size = Survey(12, 16.7);
+  size.writes_maps = size.makes_map = true;
+  const DiskNeeds disk = ExpectedDiskNeeds(size);
+  EXPECT_EQ(ExpectedNeeds(size).disk_bytes,
+            disk.database_bytes + disk.model_bytes + disk.cloud_bytes + disk.map_bytes);
+  size.makes_map = false;
+  EXPECT_EQ(ExpectedDiskNeeds(size).map_bytes, 0u);
+  EXPECT_EQ(ExpectedDiskNeeds(size).cloud_bytes, disk.cloud_bytes);
+  size.writes_maps = false;
+  EXPECT_LT(ExpectedDiskNeeds(size).cloud_bytes, disk.cloud_bytes);
 }
 
 TEST(TimesText, LeavesOutWhatIsDone) {

@@ -2,6 +2,13 @@
 #include "colmap_seapoint/mapping/colmap_log.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "colmap_seapoint/base/error.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -60,6 +67,42 @@ TEST(SaysThatThereIsNoModelTest, InEachVersionsWords) {
   EXPECT_TRUE(SaysThatThereIsNoModel("Failed to create any sparse model"));     // 4.2.1 mapper
   EXPECT_TRUE(SaysThatThereIsNoModel("Failed to create sparse model"));         // its global_mapper
   EXPECT_FALSE(SaysThatThereIsNoModel("No images with matches found in the database"));
+}
+
+TEST(SaysThatMemoryRanOutTest, InTheWordsOfThoseThatAskForIt) {
+  EXPECT_TRUE(SaysThatMemoryRanOut("what():  std::bad_alloc"));
+  EXPECT_TRUE(SaysThatMemoryRanOut("mmap failed: Cannot allocate memory"));
+  EXPECT_TRUE(SaysThatMemoryRanOut("database or disk: out of memory"));
+  EXPECT_FALSE(SaysThatMemoryRanOut("Registering image #3 (4)"));
+}
+
+// What is thrown for a run of COLMAP's that ended so and left so much of the disk; "" for nothing.
+std::string OutsideCause(const SubprocessResult& end, bool says_no_memory, const char* free_bytes) {
+  const std::filesystem::path told = std::filesystem::temp_directory_path() / "colmap_log_test";
+  std::ofstream(told) << free_bytes;
+  setenv("SEAPOINT_FREE_DISK", told.c_str(), 1);
+  std::string cause;
+  try {
+    ThrowIfFromOutside({end, says_no_memory, "/bin/colmap", "/ws/sparse", "/ws/log", "it failed"});
+  } catch (const Error& error) {
+    cause = error.what();
+  }
+  unsetenv("SEAPOINT_FREE_DISK");
+  return cause;
+}
+
+TEST(ThrowIfFromOutsideTest, TellsAFullDiskFromAFaultOfItsOwn) {
+  SubprocessResult end;
+  end.signal_number = SIGABRT;
+  EXPECT_EQ(OutsideCause(end, false, "2000000"), "");
+  EXPECT_EQ(OutsideCause(end, false, "1000"),
+            "/bin/colmap: it failed: the disk of /ws/sparse is full; make room there and run the "
+            "same command again, which goes on from there; its output is in /ws/log");
+  EXPECT_NE(OutsideCause(end, true, "2000000").find("no memory"), std::string::npos);
+  end.signal_number = SIGKILL;
+  EXPECT_NE(OutsideCause(end, false, "2000000").find("want of memory"), std::string::npos);
+  end = {1, 0};
+  EXPECT_EQ(OutsideCause(end, false, "2000000"), "");
 }
 
 TEST(SaysThatAnOptionIsRefusedTest, InEachVersionsWords) {

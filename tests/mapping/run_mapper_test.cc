@@ -482,11 +482,11 @@ TEST_F(RunMapperTest, ATriangulatorThatFailsInALaterRoundLeavesWhatWasFound) {
   colmap_.SetHelp(MapperHelp("COLMAP 3.8", {"Mapper.num_threads"}));  // it cannot hold distortion
   colmap_.Leaves(kMapper, 1, "0", Part(1, 5));
   colmap_.Leaves(kMapper, 2, "0", Part(6, 10));
-  colmap_.Ends(kTriangulator, 2, "killed", 137);
+  colmap_.Ends(kTriangulator, 2, "cannot", 3);
   testing::internal::CaptureStderr();
   Run();
   const std::string said = testing::internal::GetCapturedStderr();
-  EXPECT_NE(said.find("the triangulation failed (exit code 137)"), std::string::npos) << said;
+  EXPECT_NE(said.find("the triangulation failed (exit code 3)"), std::string::npos) << said;
   EXPECT_EQ(NumModels(), 1u);
   EXPECT_EQ(NamesIn("0").size(), 5u);
 }
@@ -633,6 +633,34 @@ TEST_F(GlobalRound, ThatFailsCostsNothing) {
   colmap_.Leaves(kMapper, 1, "0", survey_);
   Run();
   EXPECT_EQ(NamesIn("0").size(), 10u);
+}
+
+// Another mapper would find another model, and the next run this one.
+TEST_F(GlobalRound, ThatIsKilledEndsTheRun) {
+  colmap_.IsKilled(kGlobal, 1);
+  colmap_.Ends(kGlobal, 2, "terminate called after throwing an instance of 'std::bad_alloc'", 134);
+  colmap_.Ends(kGlobal, 3, "", 137);
+  colmap_.Leaves(kMapper, 1, "0", survey_);
+  for (const char* cause :
+       {"killed by signal 9 (Killed), ''): the system ended it for want of memory",
+        "there was no memory for it", "the system ended it for want of memory"}) {
+    const std::string text = ErrorOf([&] { Run(); });
+    EXPECT_NE(text.find(cause), std::string::npos) << text;
+    EXPECT_NE(text.find("close other programs and run the same command again"), std::string::npos)
+        << text;
+    EXPECT_NE(text.find("mapper_1_global.log"), std::string::npos) << text;
+  }
+  EXPECT_EQ(colmap_.NumCalls(kMapper), 0);
+}
+
+TEST_F(RunMapperTest, AKilledTriangulatorEndsTheRunInALaterRoundToo) {
+  job_.lens = LensRule::kFind;
+  colmap_.SetHelp(MapperHelp("COLMAP 3.8", {"Mapper.num_threads"}));  // it cannot hold distortion
+  colmap_.Leaves(kMapper, 1, "0", Part(1, 5));
+  colmap_.Leaves(kMapper, 2, "0", Part(6, 10));
+  colmap_.IsKilled(kTriangulator, 2);
+  const std::string text = ErrorOf([&] { Run(); });
+  EXPECT_NE(text.find("the triangulation failed (killed by signal 9"), std::string::npos) << text;
 }
 
 TEST(ListModelsTest, InNaturalOrderAndModelsOnly) {

@@ -33,6 +33,7 @@ elif [ "$command" = point_triangulator ] && [ ! -e "$dir/$command.$call.exit" ];
   cp -r "$input/." "$output"
 fi
 if [ -e "$dir/$command.$call.text" ]; then cat "$dir/$command.$call.text"; fi
+if [ -e "$dir/$command.$call.killed" ]; then kill -KILL $$; fi
 if [ -e "$dir/$command.$call.exit" ]; then exit "$(cat "$dir/$command.$call.exit")"; fi
 exit 0
 )sh";
@@ -89,6 +90,10 @@ void ScriptedColmap::Ends(const std::string& command, int call, const std::strin
                           int exit_code) {
   WriteAll(FileOf(command, call, "text"), text + "\n");
   WriteAll(FileOf(command, call, "exit"), std::to_string(exit_code));
+}
+
+void ScriptedColmap::IsKilled(const std::string& command, int call) {
+  WriteAll(FileOf(command, call, "killed"), "");
 }
 
 int ScriptedColmap::NumCalls(const std::string& command) const {

@@ -35,6 +35,8 @@ class ScriptedColmap {
               const SparseModel& model);
   // The n-th call of a command prints `text`, a line, and ends with this exit code.
   void Ends(const std::string& command, int call, const std::string& text, int exit_code);
+  // The n-th call of a command ends by kill -9.
+  void IsKilled(const std::string& command, int call);
 
   int NumCalls(const std::string& command) const;
   // All of a call's arguments, the command first.

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/hold/work_pause.h"
 #include "colmap_seapoint/system/system_error.h"
 
 namespace colmap_seapoint {
@@ -31,6 +32,10 @@ TEST(FailureLine, SaysWhatTheSystemSaid) {
   EXPECT_EQ(LineOf(rename).find("/b: "), 0u);
   const std::system_error thread(EAGAIN, std::generic_category());
   EXPECT_NE(LineOf(thread).find("ulimit -u"), std::string::npos);
+}
+
+TEST(FailureLine, StoppedWorkSaysWhy) {
+  EXPECT_EQ(LineOf(WorkStopped("/disk: is full; make room")), "/disk: is full; make room");
 }
 
 TEST(FailureLine, MemoryIsNoMistakeOfOurs) {

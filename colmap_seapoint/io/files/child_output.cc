@@ -9,6 +9,7 @@
 #include <cmath>
 #include <vector>
 
+#include "colmap_seapoint/base/hold/work_clock.h"
 #include "colmap_seapoint/base/hold/work_pause.h"
 #include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/system/system_error.h"
@@ -22,7 +23,10 @@ constexpr char kLogIsFull[] = "\n[the log is full: what followed is not kept]\n"
 }  // namespace
 
 ChildOutput::ChildOutput(const ChildOutputOptions& options)
-    : options_(options), next_silence_seconds_(options.silence_seconds) {
+    : options_(options),
+      start_seconds_(WorkSeconds()),
+      last_output_seconds_(start_seconds_),
+      next_silence_seconds_(options.silence_seconds) {
   if (options_.log_path.empty()) return;
   // Anew, so that a link of that name is replaced and what it leads to is not written over.
   std::error_code ignored;
@@ -38,26 +42,20 @@ ChildOutput::~ChildOutput() {
   if (log_ >= 0) close(log_);
 }
 
-double ChildOutput::SecondsSince(Clock::time_point start) const {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-// What the pause took counts neither as silence nor as the child's time.
+// What the pause took counts neither as silence nor as the child's time: the work's clock stands.
 void ChildOutput::PauseIfAsked() {
-  if (!IsWorkPaused()) return;
-  const auto begin = Clock::now();
+  if (!IsWorkHeld()) return;
   options_.stop(true);
   WaitWhilePaused();
   options_.stop(false);
-  start_ += Clock::now() - begin;
-  last_output_ += Clock::now() - begin;
 }
 
 // Until there is something to read.
 void ChildOutput::WaitFor(int pipe) {
   while (true) {
     PauseIfAsked();
-    const double silent = SecondsSince(last_output_), all = SecondsSince(start_);
+    const double now = WorkSeconds();
+    const double silent = now - last_output_seconds_, all = now - start_seconds_;
     if (options_.timeout_seconds > 0 && all >= options_.timeout_seconds) {
       const std::string log = options_.log_path.empty()
                                   ? ""
@@ -80,7 +78,7 @@ void ChildOutput::WaitFor(int pipe) {
     const int wait_ms = static_cast<int>(std::ceil(std::clamp(wait_seconds, 0.0, 1.0) * 1000));
     if (poll(&poll_pipe, 1, wait_ms) > 0) break;
   }
-  last_output_ = Clock::now();
+  last_output_seconds_ = WorkSeconds();
   next_silence_seconds_ = options_.silence_seconds;
 }
 

@@ -37,21 +37,18 @@ class ChildOutput {
   void CopyFrom(int pipe);
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   void WaitFor(int pipe);
   void PauseIfAsked();
   void Log(const char* data, size_t size);
   void WriteLog(const char* data, size_t size);
   void Split(const char* data, size_t size);
-  double SecondsSince(Clock::time_point start) const;
 
   const ChildOutputOptions options_;
   int log_ = -1;
   uint64_t log_bytes_ = 0;
   std::string line_;
-  Clock::time_point start_ = Clock::now();
-  Clock::time_point last_output_ = start_;
+  const double start_seconds_;  // by the work's clock (base/hold/work_clock.h)
+  double last_output_seconds_;
   double next_silence_seconds_;
 };
 

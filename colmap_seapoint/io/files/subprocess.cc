@@ -20,6 +20,7 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr int kCannotStart = 127;  // exit code of the guard, as of a shell
+constexpr int kSignalsOfScripts = 128;
 
 bool IsExecutableFile(const std::filesystem::path& path) {
   std::error_code error;
@@ -157,6 +158,11 @@ std::filesystem::path FindProgram(const std::string& name, const std::string& re
     if (!name.empty() && IsExecutableFile(candidate)) return std::filesystem::absolute(candidate);
   }
   throw Error(name, "no such program on PATH", remedy);
+}
+
+bool SubprocessResult::WasEndedByOthers() const {
+  const int number = signal_number != 0 ? signal_number : exit_code - kSignalsOfScripts;
+  return number == SIGKILL || number == SIGTERM || number == SIGINT || number == SIGHUP;
 }
 
 std::string SubprocessResult::Text() const {

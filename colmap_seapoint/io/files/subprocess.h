@@ -17,6 +17,9 @@ struct SubprocessResult {
   int exit_code = -1;     // of a program that exited
   int signal_number = 0;  // not 0: ended by this signal
   bool Succeeded() const { return signal_number == 0 && exit_code == 0; }
+  // By a signal that no program sends itself by mistake: by the system, for want of memory, or by a
+  // person. A script that started the program says so by its exit code, 128 and the signal.
+  bool WasEndedByOthers() const;
   std::string Text() const;  // "exit code 1", "killed by signal 11 (Segmentation fault)"
 };
 

@@ -114,10 +114,10 @@ TEST(ChildOutput, APauseIsNotTheChildsTime) {
   options.silence_seconds = 2;
   std::vector<bool> stops;
   options.stop = [&](bool is_stopped) { stops.push_back(is_stopped); };
-  SetWorkPaused(true);
+  SetWorkPaused(PauseReason::kBattery, true);
   const Printer printer([](int pipe) {
     Sleep(2500);
-    SetWorkPaused(false);
+    SetWorkPaused(PauseReason::kBattery, false);
     Say(pipe, "a\n");
   });
   testing::internal::CaptureStderr();
