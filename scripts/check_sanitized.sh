@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # scripts/check_sanitized.sh files   memory and undefined behaviour: the unit tests of what reads
-#                                    files, and the parsers on damaged ones; part of scripts/test.sh
+#                                    files, and the parsers on damaged ones; part of scripts/test.sh --all
 # scripts/check_sanitized.sh asan    the same and the unit tests of tracks, remeasuring, feature and
 #                                    densify; a quarter of an hour, for after a change there and
 #                                    before a release
