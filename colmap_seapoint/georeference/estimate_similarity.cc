@@ -24,6 +24,7 @@ constexpr double kMaxLengthResidual = 3.3;
 constexpr double kMaxTurnSigmaDeg = 3;
 constexpr double kMinLevellingSine = 0.2;
 constexpr int kMaxRounds = 10;
+constexpr double kMostMoved = 2;  // times what the positions' mean is uncertain by
 // Positions that stay within this share of their extent of a line say nothing of the turn about it.
 constexpr double kLine = 1e-3;
 
@@ -227,6 +228,30 @@ Solution SolveWithPositions(State* state, SimilarityEstimate* estimate) {
   return *solution;
 }
 
+double UsedPositionRms(const State& state, const Similarity3d& similarity) {
+  double square = 0, count = 0;
+  for (size_t i = 0; i < state.problem.positions.size(); ++i) {
+    if (!state.position_used[i]) continue;
+    const PositionMeasurement& position = state.problem.positions[i];
+    square += (similarity * position.in_model - position.metres).squaredNorm();
+    ++count;
+  }
+  return count > 0 ? std::sqrt(square / count) : 0;
+}
+
+bool AllowsFormer(const State& state, const Solution& solution) {
+  if (!state.problem.former) return false;
+  const Similarity3d &is = solution.similarity, &was = *state.problem.former;
+  if (!state.has_positions && !state.problem.positions.empty()) return false;  // in another frame
+  if (!state.has_positions) return std::abs(was.scale - is.scale) <= solution.scale_sigma;
+  const double allowed = kMostMoved * UsedPositionRms(state, is) /
+                         std::sqrt(static_cast<double>(Count(state.position_used)));
+  const auto& positions = state.problem.positions;
+  return std::all_of(positions.begin(), positions.end(), [&](const PositionMeasurement& position) {
+    return (was * position.in_model - is * position.in_model).norm() <= allowed;
+  });
+}
+
 void FillResiduals(const State& state, SimilarityEstimate* estimate) {
   const Similarity3d& similarity = estimate->metric_from_model;
   double square = 0, count = 0;
@@ -302,7 +327,8 @@ SimilarityEstimate EstimateSimilarity(const SimilarityProblem& problem) {
   const Solution solution =
       state.has_positions ? SolveWithPositions(&state, &estimate) : SolveScale(&state);
   if (!estimate.problem.empty()) return estimate;
-  estimate.metric_from_model = solution.similarity;
+  estimate.is_former = AllowsFormer(state, solution);
+  estimate.metric_from_model = estimate.is_former ? *problem.former : solution.similarity;
   estimate.scale_sigma = solution.scale_sigma;
   estimate.rotation_sigma_deg = solution.rotation_sigma_deg;
   estimate.has_frame = state.has_positions;

@@ -22,6 +22,8 @@ struct SimilarityEstimate {
   double scale_sigma = 0;  // standard deviation of the scale, metres a model unit
   // False where there are no usable positions: rotation and translation are then the model's own.
   bool has_frame = false;
+  // True where problem.former is kept: it is metric_from_model then, and the residuals are its.
+  bool is_former = false;
   // True where the positions do not tell the turn about their line: it is then the one that brings
   // the mean viewing direction into the vertical plane of the line.
   bool is_levelled = false;
@@ -46,8 +48,10 @@ struct SimilarityEstimate {
 // shows to be too small, come from the scatter. With lengths alone, the frame stays the model's and
 // only the scale is estimated; fewer than 3 positions are passed over, with a warning. Outliers can
 // be told from 5 positions, or 3 lengths, on. What cannot be solved is a `problem` in the result,
-// never an exception. One thread; the same bytes every time; milliseconds, or up to a second for
-// 10,000 positions.
+// never an exception. The former similarity is kept where it brings no position farther from where
+// the new one does than twice what their mean is uncertain by (the scatter of the used ones over
+// the root of their number), and the scale no farther than its standard deviation. One thread; the
+// same bytes every time; milliseconds, or up to a second for 10,000 positions.
 SimilarityEstimate EstimateSimilarity(const SimilarityProblem& problem);
 
 }  // namespace colmap_seapoint

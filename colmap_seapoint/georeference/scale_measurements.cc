@@ -52,16 +52,33 @@ GeoPosition Geo(const Eigen::Vector3d& position) {
   return {position.x(), position.y(), position.z()};
 }
 
+bool IsSamePlace(const std::optional<GeoPosition>& a, const std::optional<GeoPosition>& b) {
+  if (!a || !b) return !a && !b;
+  return a->latitude_deg == b->latitude_deg && a->longitude_deg == b->longitude_deg &&
+         a->altitude_m == b->altitude_m;
+}
+
+bool IsSameFrame(const ModelUnits& a, const ModelUnits& b) {
+  return a.is_metric == b.is_metric && a.frame == b.frame && a.crs == b.crs &&
+         IsSamePlace(a.origin, b.origin) && a.offset == b.offset;
+}
+
 // Turns the table's positions into metres, and describes their frame in `units`. Offset and origin
-// come from the whole table, so that all models of a dive share them.
-void ToFrame(const std::string& crs, PicturePositions* table, ModelUnits* units) {
+// come from the whole table, so that all models of a dive share them; or from `former`, where it is
+// of the same kind.
+void ToFrame(const std::string& crs, const FormerScale* former, PicturePositions* table,
+             ModelUnits* units) {
   units->crs = crs;
+  const auto has_former = [&] {
+    return former != nullptr && former->units.frame == units->frame && former->units.crs == crs;
+  };
   if (table->is_geographic && crs.empty()) {
     const Eigen::Vector3d median = MedianOf(table->positions);
     units->frame = "east-north-up";
     units->origin =
         GeoPosition{kOriginStepDeg * std::round(median.x() / kOriginStepDeg),
                     kOriginStepDeg * std::round(median.y() / kOriginStepDeg), Offset(median.z())};
+    if (has_former() && former->units.origin) units->origin = former->units.origin;
     for (auto& [name, position] : table->positions) {
       position = LocalEastNorthUp(Geo(position), *units->origin);
     }
@@ -76,6 +93,7 @@ void ToFrame(const std::string& crs, PicturePositions* table, ModelUnits* units)
   }
   const Eigen::Vector3d median = MedianOf(table->positions);
   for (int i = 0; i < 3; ++i) units->offset[i] = Offset(median[i]);
+  if (has_former()) units->offset = former->units.offset;
   for (auto& [name, position] : table->positions) position -= units->offset;
 }
 
@@ -95,9 +113,9 @@ std::map<std::string, const PosedImage*> ImagesByName(const SparseModel& model) 
 
 // Adds the positions of the model's pictures; returns the names of the others.
 std::vector<std::string> AddPositions(const SparseModel& model, MeasuredPositions positions,
-                                      ScaleMeasurements* result) {
+                                      const FormerScale* former, ScaleMeasurements* result) {
   PicturePositions& table = positions.table;
-  ToFrame(positions.crs, &table, &result->units);
+  ToFrame(positions.crs, former, &table, &result->units);
   const auto images = ImagesByName(model);
   std::vector<std::string> unknown;
   for (const auto& [name, position] : table.positions) {
@@ -120,10 +138,10 @@ std::vector<std::string> AddPositions(const SparseModel& model, MeasuredPosition
 }
 
 void AddPositionTable(const SparseModel& model, const ScaleSources& sources,
-                      ScaleMeasurements* result) {
+                      const FormerScale* former, ScaleMeasurements* result) {
   const std::string& path = sources.positions_path;
-  const auto unknown =
-      AddPositions(model, {ReadPositionsCsv(path, kPositionsOption), path, sources.crs}, result);
+  const auto unknown = AddPositions(
+      model, {ReadPositionsCsv(path, kPositionsOption), path, sources.crs}, former, result);
   WarnOfUnknown(path, unknown, "of its pictures are not in the model");
 }
 
@@ -373,7 +391,7 @@ void CheckScaleTables(const ScaleSources& sources) {
   if (sources.HasPositionTable()) {
     PicturePositions table = ReadPositionsCsv(sources.positions_path, kPositionsOption);
     ModelUnits units;
-    ToFrame(sources.crs, &table, &units);
+    ToFrame(sources.crs, nullptr, &table, &units);
   }
 }
 
@@ -403,13 +421,16 @@ void CheckScaleNames(const ScaleSources& sources, const std::vector<std::string>
 ScaleMeasurements GatherMeasurements(const SparseModel& model, const ScaleSources& sources,
                                      const std::vector<MarkerSighting>& sightings,
                                      const StereoRig& rig, int seed, RunReport* report,
-                                     const MeasuredPositions* measured) {
+                                     const MeasuredPositions* measured, const FormerScale* former) {
   ScaleMeasurements result;
   result.units.is_metric = true;
   result.problem.seed = seed;
   result.problem.down_in_model = MeanViewingDirection(model);
-  if (sources.HasPositionTable()) AddPositionTable(model, sources, &result);
-  if (measured != nullptr) AddPositions(model, *measured, &result);
+  if (sources.HasPositionTable()) AddPositionTable(model, sources, former, &result);
+  if (measured != nullptr) AddPositions(model, *measured, former, &result);
+  if (former != nullptr && IsSameFrame(former->units, result.units)) {
+    result.problem.former = former->metric_from_model;
+  }
   const Markers markers = PlaceMarkers(model, sightings, sources.max_target_error);
   AddBars(model, sources, markers, &result, report);
   AddMarkerSides(sources, markers, &result);

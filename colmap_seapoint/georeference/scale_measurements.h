@@ -30,6 +30,12 @@ struct MeasuredPositions {
   std::string crs;   // of the result; empty = east, north, up of the place
 };
 
+// How the model was scaled before pictures came in.
+struct FormerScale {
+  ModelUnits units;
+  Similarity3d metric_from_model;
+};
+
 struct ScaleMeasurements {
   SimilarityProblem problem;
   std::vector<std::string> position_names, length_names;  // one a measurement, in its order
@@ -50,10 +56,12 @@ void CheckScaleNames(const ScaleSources& sources, const std::vector<std::string>
 // are the coded markers found in the pictures (of any model). Throws Error for a bad table, a
 // point:ID that is not there, a mark outside its picture, a rig without simultaneous pictures, and
 // when nothing of the sources is in the model. `measured`: positions that take the place of a
-// table's; nullptr = none.
+// table's; nullptr = none. Origin and offset of `former` are kept where its frame is of the same
+// kind, and its similarity goes into the problem where the frame is the same; nullptr = none.
 ScaleMeasurements GatherMeasurements(const SparseModel& model, const ScaleSources& sources,
                                      const std::vector<MarkerSighting>& sightings,
                                      const StereoRig& rig, int seed, RunReport* report,
-                                     const MeasuredPositions* measured = nullptr);
+                                     const MeasuredPositions* measured = nullptr,
+                                     const FormerScale* former = nullptr);
 
 }  // namespace colmap_seapoint

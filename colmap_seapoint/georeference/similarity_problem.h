@@ -2,7 +2,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
+
+#include "colmap_seapoint/base/similarity3.h"
 
 namespace colmap_seapoint {
 
@@ -28,6 +31,9 @@ struct SimilarityProblem {
   // Mean viewing direction of the cameras, in the model's frame; zero where they look all round.
   Eigen::Vector3d down_in_model = Eigen::Vector3d::Zero();
   int seed = 0;
+  // Of the model before pictures came in, in the frame of `positions` (ours): kept where the
+  // measurements allow it, so that what was made of the model stays true.
+  std::optional<Similarity3d> former;
 };
 
 }  // namespace colmap_seapoint

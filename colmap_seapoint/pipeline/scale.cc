@@ -161,9 +161,9 @@ Estimation Estimate(const ModelScalerOptions& options, const PictureRecords& rec
   const StereoRig rig = sources.rig_spacing > 0
                             ? ReadRig(options.rig, options.image_path, options.input_path, model)
                             : StereoRig();
-  found.measurements = GatherMeasurements(model, sources, SightingsFor(options, model, report), rig,
-                                          options.run.random_seed, report,
-                                          is_usable ? &positions.measured : nullptr);
+  found.measurements = GatherMeasurements(
+      model, sources, SightingsFor(options, model, report), rig, options.run.random_seed, report,
+      is_usable ? &positions.measured : nullptr, options.former ? &*options.former : nullptr);
   found.estimate = EstimateSimilarity(found.measurements.problem);
   const std::string doubt = is_usable && !has_others ? Doubt(found.estimate) : "";
   if (!doubt.empty()) {
@@ -243,6 +243,7 @@ ScaledModel ScaleModel(const ModelScalerOptions& options, const PictureRecords& 
     WriteResult(options, found.measurements, found.estimate, &folder, &model);
     scaled.text = found.source + ScaleText(found.measurements, found.estimate);
     scaled.line = found.source_line + ScaleLine(found.measurements, found.estimate);
+    scaled.metric_from_model = found.estimate.metric_from_model;
     scaled.report.units = UnitsWord(found.measurements.units);
   }
   WriteRunReport(fs::path(options.output_path) / "run.json", scaled.report);

@@ -2,6 +2,7 @@
 // positions allow.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "colmap_seapoint/base/options.h"
@@ -21,6 +22,7 @@ struct ModelScalerOptions {
   std::string rig;           // "", "none" or "LEFT,RIGHT" (read_rig.h)
   std::string report_path;   // CSV, a row a measurement with its residual; empty = none
   ScaleSources sources;
+  std::optional<FormerScale> former;  // of the model before pictures came in; set by the chain
   RunOptions run;
 
   void Bind(OptionTable* table);
@@ -33,6 +35,7 @@ struct ScaledModel {
   // Why the model stays as it is; empty: it is scaled. Only what the pictures' EXIF or a log says
   // may be refused; then nothing is written.
   std::string refused;
+  Similarity3d metric_from_model;
 };
 
 // Writes the model (in the form it had, binary or text, with its rigs and frames), units.json,

@@ -1,5 +1,6 @@
 #include "colmap_seapoint/pipeline/scale_models.h"
 
+#include <array>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -12,11 +13,27 @@
 #include "colmap_seapoint/io/files/content_hash.h"
 #include "colmap_seapoint/io/files/model_units.h"
 #include "colmap_seapoint/io/files/run_report_json.h"
+#include "colmap_seapoint/io/image/picture_masks.h"
 #include "colmap_seapoint/markers/detect_markers.h"
 #include "colmap_seapoint/pictures/find_markers.h"
 #include "colmap_seapoint/workspace/earlier_outputs.h"
+#include "colmap_seapoint/workspace/posed_pictures.h"
 
 namespace colmap_seapoint {
+
+static void to_json(nlohmann::ordered_json& json, const Similarity3d& similarity) {
+  const Eigen::Quaterniond& q = similarity.rotation;
+  const Eigen::Vector3d& t = similarity.translation;
+  json = {similarity.scale, q.w(), q.x(), q.y(), q.z(), t.x(), t.y(), t.z()};
+}
+
+static void from_json(const nlohmann::ordered_json& json, Similarity3d& similarity) {
+  const auto at = json.get<std::array<double, 8>>();
+  similarity.scale = at[0];
+  similarity.rotation = {at[1], at[2], at[3], at[4]};
+  similarity.translation = {at[5], at[6], at[7]};
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -32,12 +49,16 @@ std::string RecordsText(const PictureRecords& records) {
   return HashText(text.str());
 }
 
+// Whatever the model, the tables and the pictures hold.
+std::string OptionsText(const ModelScalerOptions& scaler) {
+  return scaler.rig + "," + std::to_string(scaler.run.random_seed) + "," +
+         OptionsFingerprint(OptionValues(scaler.sources));
+}
+
 std::string Inputs(const ModelScalerOptions& scaler, const PictureRecords& records,
                    const std::string& mapper_fingerprint) {
   const ScaleSources& sources = scaler.sources;
-  std::string text = mapper_fingerprint + "," + scaler.rig + "," +
-                     std::to_string(scaler.run.random_seed) + "," +
-                     OptionsFingerprint(OptionValues(sources));
+  std::string text = mapper_fingerprint + "," + OptionsText(scaler);
   for (const std::string& path : {sources.scale_bars_path, sources.targets_path,
                                   sources.positions_path, sources.nav_times, scaler.markers_path}) {
     if (!path.empty() && path != kNoPositions) text += DescribeInput(path, path).hash + ",";
@@ -46,6 +67,59 @@ std::string Inputs(const ModelScalerOptions& scaler, const PictureRecords& recor
   for (std::string path; std::getline(logs, path, ',');) text += DescribeInput(path, path).hash;
   if (!sources.Any() || !sources.nav.empty()) text += RecordsText(records);
   return text;
+}
+
+// How a model was scaled, for the time when pictures come in and are added to it.
+struct ScaleRecord {
+  std::vector<std::string> pictures;  // posed_pictures.h, of the mapper's model
+  std::string inputs;                 // fingerprint of the stage
+  Similarity3d metric_from_model;
+  std::optional<Similarity3d> former;  // what it was to be kept to: given again when done again
+};
+
+void to_json(nlohmann::ordered_json& json, const ScaleRecord& record) {
+  json = {{"pictures", record.pictures},
+          {"inputs", record.inputs},
+          {"metric_from_model", record.metric_from_model}};
+  if (record.former) json["former"] = *record.former;
+}
+
+void from_json(const nlohmann::ordered_json& json, ScaleRecord& record) {
+  json.at("pictures").get_to(record.pictures);
+  json.at("inputs").get_to(record.inputs);
+  json.at("metric_from_model").get_to(record.metric_from_model);
+  if (json.contains("former")) record.former = json.at("former").get<Similarity3d>();
+}
+
+Stage RecordStage(const ModelScalerOptions& scaler, const std::string& name) {
+  return {"scale_to_continue_" + name, kScalingVersion, OptionsText(scaler), ""};
+}
+
+fs::path UnitsFolder(const std::string& name, const WorkspaceState& state) {
+  return state.StateFolder() / ("scale_" + name + "_before");
+}
+
+// nullopt where the model is not one that was scaled, with pictures behind its own.
+std::optional<FormerScale> FormerScaleOf(const Stage& stage, const std::string& name,
+                                         const ScaleRecord& now, const WorkspaceState& state) {
+  const auto was = ResultIfDone<ScaleRecord>(state, stage);
+  if (!was || !BeginWith(now.pictures, was->pictures)) return std::nullopt;
+  const bool has_grown = now.pictures.size() > was->pictures.size();
+  // Another table for the same pictures is a correction.
+  if (!has_grown && (now.inputs != was->inputs || !was->former)) return std::nullopt;
+  const auto units = ReadModelUnits(UnitsFolder(name, state));
+  if (!units) return std::nullopt;
+  return FormerScale{*units, has_grown ? was->metric_from_model : *was->former};
+}
+
+void RememberScale(const Stage& stage, const std::string& name, const fs::path& scaled_path,
+                   const ScaleRecord& record, WorkspaceState* state) {
+  const auto units = ReadModelUnits(scaled_path);
+  if (!units) return;
+  const fs::path folder = UnitsFolder(name, *state);
+  fs::create_directories(folder);
+  WriteModelUnits(folder, *units);
+  FinishStage(stage, record, {folder / kUnitsFile}, state);
 }
 
 // The stage of one model.
@@ -79,12 +153,13 @@ void to_json(nlohmann::ordered_json& json, const ScaledModel& scaled) {
   json = {{"report", scaled.report},
           {"text", scaled.text},
           {"line", scaled.line},
-          {"refused", scaled.refused}};
+          {"refused", scaled.refused},
+          {"metric_from_model", scaled.metric_from_model}};
 }
 
 void from_json(const nlohmann::ordered_json& json, ScaledModel& scaled) {
   scaled = {json.at("report").get<RunReport>(), json.at("text"), json.at("line"),
-            json.at("refused")};
+            json.at("refused"), json.at("metric_from_model").get<Similarity3d>()};
 }
 
 std::vector<MarkerSighting> FindMarkersOnce(const MarkerSearch& search, const Workspace& workspace,
@@ -139,6 +214,11 @@ RunReport ScaleAllModels(ModelScalerOptions scaler, const PictureRecords& record
     stage.name = "scale_" + model.name;
     stage.done = "The scaled model in " + scaler.output_path + " is there already";
     try {
+      const Stage record_stage = RecordStage(scaler, model.name);
+      ScaleRecord record;
+      record.pictures = PosedPictureLines(model.path, PictureMasks(""));
+      record.inputs = StageFingerprint(stage);
+      scaler.former = FormerScaleOf(record_stage, model.name, record, *state);
       const ScaledModel scaled = ScaleOnce(scaler, records, stage, state);
       const RunReport& part = scaled.report;
       report.stages.insert(report.stages.end(), part.stages.begin(), part.stages.end());
@@ -147,6 +227,9 @@ RunReport ScaleAllModels(ModelScalerOptions scaler, const PictureRecords& record
       ++num_done;
       if (scaled.refused.empty()) {
         SetScale(scaled, scaler.output_path, StageFingerprint(stage), &model);
+        record.metric_from_model = scaled.metric_from_model;
+        if (scaler.former) record.former = scaler.former->metric_from_model;
+        RememberScale(record_stage, model.name, scaler.output_path, record, state);
       } else {
         model.scaling = scaled.refused;
         LogWarning("sparse/" + model.name + " keeps its arbitrary units: " + scaled.refused);

@@ -30,8 +30,9 @@ std::vector<MarkerSighting> FindMarkersOnce(const MarkerSearch& search, const Wo
 // sources, or the pictures' `records` hold GPS; what an earlier run has done already is taken as it
 // is. Sets path, units and scaling of the models. A model that cannot be scaled stays as it is, and
 // is named in the report; throws Error when none can. A model that GPS or a log cannot scale stays
-// as it is, too, and its `scaling` says why. Without sources, removes what earlier runs with some
-// left in sparse_scaled.
+// as it is, too, and its `scaling` says why. Where pictures came in, and what is measured of the
+// model with them agrees with how it was scaled before, that is kept: what was made of it stays as
+// it is. Without sources, removes what earlier runs with some left in sparse_scaled.
 RunReport ScaleAllModels(ModelScalerOptions scaler, const PictureRecords& records,
                          const Workspace& workspace, const std::string& mapper_fingerprint,
                          WorkspaceState* state, std::vector<ModelSummary>* models);

@@ -94,6 +94,7 @@ std::string ScaleLine(const ScaleMeasurements& measurements, const SimilarityEst
       text += "; they lie on a line, the turn about it is from where the cameras look";
     }
   }
+  if (estimate.is_former) text += "; as before pictures came in, which agree with it";
   if (!estimate.length_used.empty()) {
     text += Format("; lengths %zu of %zu, rms %.4f m", Count(estimate.length_used),
                    estimate.length_used.size(), estimate.length_rms);
@@ -141,6 +142,7 @@ void WriteScaleJson(const std::filesystem::path& path, const ScaleMeasurements& 
   json["new_from_old"] = SimilarityJson(estimate.metric_from_model);
   json["frame"] = UnitsText(measurements.units);
   json["levelled"] = estimate.is_levelled;
+  json["kept_from_before"] = estimate.is_former;
   json["rotation_sigma_deg"] = estimate.rotation_sigma_deg;
   json["position_rms_m"] = estimate.position_rms;
   json["length_rms_m"] = estimate.length_rms;

@@ -300,6 +300,42 @@ TEST(EstimateSimilarity, TwoPositionsBesideABarAreNotUsed) {
   EXPECT_NEAR(estimate.metric_from_model.scale, Truth().scale, 1e-9);
 }
 
+// Noise of 5 cm: with more positions the similarity is another one, within what the first ones
+// knew.
+TEST(EstimateSimilarity, AFormerSimilarityIsKeptWhereThePositionsAllowIt) {
+  SimilarityProblem problem = ProblemOf(Strips(5, 8));
+  AddNoise(0.05, 3, &problem);
+  SimilarityProblem first = problem;
+  first.positions.resize(32);
+  const Similarity3d former = EstimateSimilarity(first).metric_from_model;
+  const SimilarityEstimate anew = EstimateSimilarity(problem);
+  EXPECT_NE(anew.metric_from_model.scale, former.scale);
+  EXPECT_FALSE(anew.is_former);
+  problem.former = former;
+  const SimilarityEstimate kept = EstimateSimilarity(problem);
+  EXPECT_TRUE(kept.is_former);
+  EXPECT_EQ(kept.metric_from_model.scale, former.scale);
+  EXPECT_EQ(kept.metric_from_model.translation, former.translation);
+  const PositionMeasurement& last = problem.positions.back();
+  EXPECT_EQ(kept.position_residuals.back(), former * last.in_model - last.metres);
+  // More than twice what the mean of 40 positions is uncertain by, 8.7 cm / sqrt(40).
+  problem.former->translation.x() += 0.06;
+  const SimilarityEstimate moved = EstimateSimilarity(problem);
+  EXPECT_FALSE(moved.is_former);
+  EXPECT_EQ(moved.metric_from_model.scale, anew.metric_from_model.scale);
+}
+
+TEST(EstimateSimilarity, AFormerScaleIsKeptWhereTheBarsAllowIt) {
+  SimilarityProblem problem;
+  problem.lengths = {Bar(0.5), Bar(1.2), Bar(0.8)};
+  const SimilarityEstimate anew = EstimateSimilarity(problem);
+  problem.former = anew.metric_from_model;
+  problem.former->scale += 0.9 * anew.scale_sigma;
+  EXPECT_EQ(EstimateSimilarity(problem).metric_from_model.scale, problem.former->scale);
+  problem.former->scale += 0.2 * anew.scale_sigma;
+  EXPECT_EQ(EstimateSimilarity(problem).metric_from_model.scale, anew.metric_from_model.scale);
+}
+
 TEST(EstimateSimilarity, SameBytesEveryTime) {
   SimilarityProblem problem = ProblemOf(Strips(6, 20));  // too many for all samples
   AddNoise(0.2, 2, &problem);

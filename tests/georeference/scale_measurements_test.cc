@@ -108,6 +108,30 @@ TEST_F(Measurements, LatitudeAndLongitudeBecomeEastNorthUp) {
   EXPECT_NEAR((positions[1].metres - positions[0].metres).z(), -2, 1e-6);
 }
 
+// The median has moved with the pictures that came in.
+TEST_F(Measurements, OriginAndOffsetOfBeforeAreKept) {
+  FormerScale former;
+  former.units.is_metric = true;
+  former.units.frame = "east-north-up";
+  former.units.origin = GeoPosition{43.00002, 5.00001, 0};
+  former.metric_from_model.scale = 3;
+  const auto gather = [&] {
+    return GatherMeasurements(model_, sources_, sightings_, {}, 5, &report_, nullptr, &former);
+  };
+  sources_.positions_path = Table("positions.csv",
+                                  "image,lat,lon,alt\nimg1.jpg,43.1,5.1,-3\n"
+                                  "img2.jpg,43.1001,5.1,-3\nimg3.jpg,43.1001,5.1001,-3\n");
+  const ScaleMeasurements found = gather();
+  EXPECT_EQ(found.units.origin->latitude_deg, 43.00002);
+  ASSERT_TRUE(found.problem.former);
+  EXPECT_EQ(found.problem.former->scale, 3);
+  EXPECT_GT(found.problem.positions[0].metres.norm(), 1000);
+  // Of another kind: nothing of it counts.
+  sources_.positions_path =
+      Table("positions.csv", "image,x,y,z\nimg1.jpg,1,10,-1\nimg2.jpg,1,20,-1\n");
+  EXPECT_FALSE(gather().problem.former);
+}
+
 TEST_F(Measurements, AProjectedFrame) {
   sources_.crs = "EPSG:32632";
   sources_.positions_path =

@@ -245,6 +245,50 @@ TEST_F(ScaleModelsTest, IsDoneAgainWhenItsInputsChange) {
   EXPECT_TRUE(fs::exists(Space().scaled / "0/scale.json"));
 }
 
+// What was made of a model stays true when pictures come in whose positions agree with it.
+TEST_F(ScaleModelsTest, AModelThatGrowsKeepsItsScaleWhereItMay) {
+  const auto write = [&](int count) {
+    std::vector<ModelSummary> models(1);
+    models[0].name = "0";
+    models[0].path = Space().sparse / "0";
+    WriteSparseModelBinary(models[0].path, StripModel(count, "a"));
+    return models;
+  };
+  // Every second picture `scatter` metres off, in an order that is not that of the strip.
+  const auto positions = [&](int count, double scatter) {
+    std::string text = "image,x,y,z\n";
+    for (int i = 1; i <= count; ++i) {
+      text += "a" + std::to_string(i) + ".png," + std::to_string(2 * i) + "," +
+              std::to_string(i % 3 == 0 ? scatter : -scatter) + ",-5\n";
+    }
+    ModelScalerOptions scaler;
+    scaler.sources.positions_path = Write("positions.csv", text);
+    return scaler;
+  };
+  const auto first_pose = [&] {
+    const Rigid3d pose = ReadSparseModel(Space().scaled / "0").images[0].cam_from_world;
+    return std::make_pair(pose.translation, pose.rotation.coeffs());
+  };
+  std::vector<ModelSummary> models = write(8);
+  Scale(positions(8, 0.02), &models);
+  const auto before = first_pose();
+  models = write(10);
+  Scale(positions(10, 0.02), &models, "grown");
+  EXPECT_EQ(first_pose(), before);
+  EXPECT_NE(models[0].scaling.find("as before pictures came in"), std::string::npos)
+      << models[0].scaling;
+  // Done again, as after damage: the same bytes.
+  const std::string bytes = ReadBytes(Space().scaled / "0/images.bin");
+  fs::remove(Space().scaled / "0/images.bin");
+  models = write(10);
+  Scale(positions(10, 0.02), &models, "grown");
+  EXPECT_EQ(ReadBytes(Space().scaled / "0/images.bin"), bytes);
+  // A table that is corrected counts.
+  models = write(10);
+  Scale(positions(10, 0.021), &models, "grown");
+  EXPECT_NE(first_pose(), before);
+}
+
 TEST_F(ScaleModelsTest, WithoutSourcesTheFolderGoes) {
   std::vector<ModelSummary> models = WriteModels("ab");
   Scale(Positions("ab"), &models);
