@@ -2,8 +2,10 @@
 
 #include <cctype>
 #include <cstdint>
+#include <system_error>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/io/files/atomic_file.h"
 #include "colmap_seapoint/system/free_disk.h"
 
 namespace colmap_seapoint {
@@ -53,7 +55,23 @@ struct OutsideCause {
   std::string cause, remedy;  // "": the fault is its own
 };
 
+// Why no file can be written in the folder, which a program may take for a want of memory.
+std::string DiskFault(const std::filesystem::path& folder) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error)) return "";
+  try {
+    CheckWritableDir(folder);
+  } catch (const Error& fault) {
+    return fault.Finding();
+  }
+  return "";
+}
+
 OutsideCause FindOutsideCause(const FailedRun& run) {
+  const std::string fault = DiskFault(run.output_path);
+  if (!fault.empty()) {
+    return {fault + ": " + run.output_path.string(), "check the disk and its cable"};
+  }
   if (run.says_that_memory_ran_out) return {"there was no memory for it", "close other programs"};
   if (run.end.WasEndedByOthers()) {
     return {"the system ended it for want of memory, or somebody did", "close other programs"};

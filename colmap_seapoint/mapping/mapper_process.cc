@@ -82,13 +82,15 @@ MapperEnd RunMapperProcess(const ColmapProgram& colmap, const MapperCall& call) 
   }
   MapperEnd end;
   end.text = result.Text() + ", '" + last_message + "'";
+  const std::string finding = "the mapper failed (" + end.text + ")";
+  if (!result.Succeeded() && !says_no_model) {
+    ThrowIfFromOutside(
+        {result, says_no_memory, colmap.path, call.output_path, call.log_path, finding});
+  }
   const bool found_none =
       ListModels(call.output_path).empty() && (says_no_model || !call.must_succeed);
   end.is_usable = result.signal_number == 0 && (result.exit_code == 0 || found_none);
   if (end.is_usable) return end;
-  const std::string finding = "the mapper failed (" + end.text + ")";
-  ThrowIfFromOutside(
-      {result, says_no_memory, colmap.path, call.output_path, call.log_path, finding});
   if (call.must_succeed) {
     throw Error(colmap.path.string(), finding,
                 "read its output in " + call.log_path.string() + " and run the same command again");

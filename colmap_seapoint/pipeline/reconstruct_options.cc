@@ -67,9 +67,8 @@ void AutomaticReconstructorOptions::Bind(OptionTable* table) {
 void AutomaticReconstructorOptions::BindField(OptionTable* table) {
   table->Add(
       "check_disk", &check_disk,
-      "end before any work, or before its next step, where the disk has by far less room than "
-      "what is left takes, when nothing that can be made again is left to remove; with "
-      "--watch, wait for room; 0 = go on all the same",
+      "end where the disk has by far too little room for what is left, and nothing that can be "
+      "made again is left to remove; with --watch, wait for room; 0 = go on all the same",
       "ours");
   table->Add("estimate_only", &estimate_only,
              "say what the job will take in time, disk and memory, as JSON, and do nothing",

@@ -13,7 +13,8 @@ namespace colmap_seapoint {
 namespace {
 
 constexpr char kNoMemory[] =
-    "memory: not enough for this run; use fewer --num_threads or smaller pictures";
+    "memory: not enough for this run; close other programs, use fewer --num_threads or smaller "
+    "pictures, and run the same command again: what is done is kept";
 
 bool IsOutOfMemory(const std::exception& error) {
   const auto* of_opencv = dynamic_cast<const cv::Exception*>(&error);

@@ -14,7 +14,6 @@ std::string Remedy(int error_number) {
       return "free some space or choose a folder on another disk";
     case EACCES:
     case EPERM:
-    case EROFS:
       return "choose a folder that you may write to, or change its permissions";
     case ENOENT:
     case ENOTDIR:
@@ -24,8 +23,12 @@ std::string Remedy(int error_number) {
     case EMFILE:
     case ENFILE:
       return "close other programs, or raise the limit of open files (ulimit -n)";
-    case ENOMEM:
-      return "close other programs, or use fewer --num_threads";
+    case EROFS:  // as file systems become whose disk fails
+      return "if the disk was pulled or fails, put it back or check its cable, and run again; else "
+             "choose a folder that you may write to";
+    case ENOMEM:  // and what a folder on a disk that is gone answers
+      return "close other programs, or use fewer --num_threads; if the disk was pulled, put it "
+             "back";
     case EAGAIN:
       return "end other programs, or raise the limit of processes (ulimit -u)";
     case EIO:

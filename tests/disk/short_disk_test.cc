@@ -90,16 +90,16 @@ TEST_F(ShortDisk, BeginsNothingWhereItIsTooSmall) {
 TEST_F(ShortDisk, AFinishedWorkspaceIsNoShortage) {
   ASSERT_EQ(Reconstruct("ws", {}).exit_code, 0);
   const std::string cloud = Cloud("ws");
-  fs::create_directories(folder_ / "ws" / "sparse.tmp" / "0");
-  WriteBytes(folder_ / "ws" / "sparse.tmp" / "0" / "images.bin", "half");
+  const fs::path memory = folder_ / "ws" / "state" / "map_0_abc.memory";
+  WriteBytes(memory, "tiles");
   disk_.SetFree(4'000'000);  // between the least and the most that four pictures take
   const CliResult again = Reconstruct("ws", {});
   EXPECT_EQ(again.exit_code, 0) << again.Text();
   EXPECT_TRUE(Cloud("ws") == cloud);
-  EXPECT_NE(again.err.find("room is short: removed what an interrupted run left half made"),
+  EXPECT_NE(again.err.find("room is short: removed what maps are continued from"),
             std::string::npos)
       << again.err;
-  EXPECT_FALSE(fs::exists(folder_ / "ws" / "sparse.tmp"));
+  EXPECT_FALSE(fs::exists(memory));
 }
 
 TEST_F(ShortDisk, AWatchWaitsForRoom) {

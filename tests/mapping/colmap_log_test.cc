@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "colmap_seapoint/base/error.h"
+#include "tests/expect_error.h"
 
 namespace colmap_seapoint {
 namespace {
@@ -103,6 +104,18 @@ TEST(ThrowIfFromOutsideTest, TellsAFullDiskFromAFaultOfItsOwn) {
   EXPECT_NE(OutsideCause(end, false, "2000000").find("want of memory"), std::string::npos);
   end = {1, 0};
   EXPECT_EQ(OutsideCause(end, false, "2000000"), "");
+}
+
+// A folder on a disk that is gone refuses files with words of its own.
+TEST(ThrowIfFromOutsideTest, ADiskThatTakesNothingIsNoWantOfMemory) {
+  SubprocessResult end;
+  end.signal_number = SIGABRT;
+  const std::string cause = ErrorOf([&] {
+    ThrowIfFromOutside({end, true, "/bin/colmap", "/proc/self", "/l", "it failed"});
+  });
+  EXPECT_EQ(cause.find("/bin/colmap: it failed: no file can be created in this folder"), 0u)
+      << cause;
+  EXPECT_NE(cause.find("check the disk and its cable"), std::string::npos) << cause;
 }
 
 TEST(SaysThatAnOptionIsRefusedTest, InEachVersionsWords) {

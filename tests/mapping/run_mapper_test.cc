@@ -434,11 +434,19 @@ TEST_F(RunMapperTest, AFailureOfTheSecondTrialLeavesTheFirst) {
   job_.lens = LensRule::kFind;
   colmap_.Leaves(kMapper, 1, "0", Part(1, 9));
   colmap_.Leaves(kMapper, 2, "0", Part(1, 9));
-  colmap_.Ends(kMapper, 2, "out of memory", 1);
+  colmap_.Ends(kMapper, 2, "cannot", 1);
   testing::internal::CaptureStderr();
   Run();
-  EXPECT_NE(testing::internal::GetCapturedStderr().find("out of memory"), std::string::npos);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("cannot"), std::string::npos);
   EXPECT_EQ(NamesIn("0").size(), 9u);
+}
+
+// With the memory that there is the next time it may be the better one.
+TEST_F(RunMapperTest, ASecondTrialWithoutMemoryEndsTheRun) {
+  job_.lens = LensRule::kFind;
+  colmap_.Leaves(kMapper, 1, "0", Part(1, 9));
+  colmap_.Ends(kMapper, 2, "out of memory", 1);
+  EXPECT_ERROR(Run(), "there was no memory for it");
 }
 
 TEST_F(RunMapperTest, WhereASmallModelLeavesPicturesOverColmapBeginsAFewTimesAnew) {

@@ -57,6 +57,11 @@ TEST(SystemError, RemediesFollowTheErrorNumber) {
             "f: cannot be written (File too large); free some space or choose a folder on another "
             "disk");
   EXPECT_NE(std::string(ReadError("f", EIO).what()).find("check the disk"), std::string::npos);
+  // As a disk that was pulled answers, sooner or later.
+  for (const int error_number : {EROFS, ENOMEM}) {
+    const std::string line = SystemError("f", "cannot be created", error_number).what();
+    EXPECT_NE(line.find("if the disk was pulled"), std::string::npos) << line;
+  }
 }
 
 }  // namespace

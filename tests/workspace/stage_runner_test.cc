@@ -271,6 +271,15 @@ TEST_F(StageRunner, ARunThatIsAboutToEndIsWaitedFor) {
   EXPECT_NO_THROW(Open());
 }
 
+// A run that the system killed could not say so itself.
+TEST_F(StageRunner, TellsOfARunThatDidNotComeToItsEnd) {
+  EXPECT_EQ(LogOf([&] { Open(); }), "");
+  { const Holder killed(Path(), 60); }
+  const std::string log = LogOf([&] { Open(); });
+  EXPECT_NE(log.find("the run before did not come to its end"), std::string::npos) << log;
+  EXPECT_EQ(LogOf([&] { Open(); }), "");
+}
+
 TEST_F(StageRunner, TheLockEndsWithItsObject) {
   for (int i = 0; i < 2; ++i) {
     WorkspaceState state(Path());

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "colmap_seapoint/base/error.h"
+#include "colmap_seapoint/base/progress.h"
 #include "colmap_seapoint/system/system_error.h"
 
 namespace colmap_seapoint {
@@ -37,18 +38,30 @@ Attempt TryLock(const std::filesystem::path& path, int descriptor) {
   return knows_locks ? Attempt::kBusy : Attempt::kLocked;
 }
 
+// Which had no time for a last word: whoever finds its log wants to know. Of a workspace alone, not
+// of each folder in it.
+void TellOfInterruptedRun(const std::filesystem::path& what) {
+  LogInfo(what.string() +
+          ": the run before did not come to its end (stopped, killed, for want of memory or of "
+          "power); this one goes on from there");
+}
+
 }  // namespace
 
 RunLock::RunLock(const std::filesystem::path& path, const std::filesystem::path& what,
                  const std::string& remedy, IfBusy if_busy)
     : path_(path) {
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const bool was_there = access(path.c_str(), F_OK) == 0;
     descriptor_ = open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (descriptor_ < 0) {
       throw Error(path.string(), "cannot be created (" + SystemText(errno) + ")", remedy);
     }
     const Attempt result = TryLock(path, descriptor_);
-    if (result == Attempt::kLocked) return;
+    if (result == Attempt::kLocked) {
+      if (was_there && if_busy == IfBusy::kWaitForChildren) TellOfInterruptedRun(what);
+      return;
+    }
     close(descriptor_);
     if (result != Attempt::kBusy) continue;
     if (if_busy == IfBusy::kRefuse) break;
