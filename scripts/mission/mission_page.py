@@ -47,11 +47,15 @@ def first_five(lines):
     return lines[:5] + ([f"and {len(lines) - 5} more"] if len(lines) > 5 else [])
 
 
-def left_out(results, workspace):
+def left_out(report):
     """A line for each thing that the dive's run left out, five at most."""
-    report = dives.read_json(os.path.join(results, workspace, "report/run.json")) or {}
     return first_five([f"{entry.get('name')}: {entry.get('reason')}"
                        for entry in report.get("left_out", [])])
+
+
+def seconds_of(report):
+    """Of all its stages, in whatever run they were done: the last one may have found them there."""
+    return sum(stage.get("wall_seconds", 0) for stage in report.get("stages", []))
 
 
 def why_failed(mission, dive):
@@ -96,7 +100,8 @@ def card(mission, results, dive):
     if what in ("full", "coarse"):
         result = dives.outcome(mission, dive, what)
         workspace = os.path.join(dive, dives.WORKSPACES[what])
-        lines += [f"<p>Left out: {html.escape(line)}</p>" for line in left_out(results, workspace)]
+        report = dives.read_json(os.path.join(results, workspace, "report/run.json")) or {}
+        lines += [f"<p>Left out: {html.escape(line)}</p>" for line in left_out(report)]
         for picture in maps_of(results, workspace):
             full = os.path.join(os.path.dirname(picture), "orthomosaic.tif")
             target = full if os.path.exists(os.path.join(results, full)) else picture
@@ -104,7 +109,7 @@ def card(mission, results, dive):
                          f'alt="Orthomosaic of {html.escape(dive, quote=True)}"></a>')
         lines += links(results, dive, reports_of(what))
         lines.append(f"<p>Quality: {html.escape(result['quality'])}; it took "
-                     f"{duration(result['seconds'])}.</p>")
+                     f"{duration(seconds_of(report))}.</p>")
     else:
         if what == "failed":
             lines += why_failed(mission, dive)

@@ -19,7 +19,8 @@ PROGRAM = """#!/bin/sh
 case "$*" in
   *estimate_only*) n=$(ls "$3" | wc -l)
     echo '{"seconds": '$n', "intake_seconds": 0, "pictures": '$n', "disk_bytes": 1}' ;;
-  *coarse/workspace*) mkdir -p "$5/report"; echo '3 of 3 pictures used' >"$5/report/summary.txt" ;;
+  *coarse/workspace*) mkdir -p "$5/report"; echo '3 of 3 pictures used' >"$5/report/summary.txt"
+    echo '{"stages": [{"wall_seconds": 40}, {"wall_seconds": 12}]}' >"$5/report/run.json" ;;
   *) exec sleep 60 ;;
 esac
 """
@@ -77,6 +78,12 @@ class Mission(unittest.TestCase):
             for _ in range(3):
                 plan.remember(step, 8 * expected[step], 0.25, estimated)
             self.assertAlmostEqual(self.told(1.0)[step], 2 * expected[step], delta=0.2)
+
+    def test_a_card_tells_what_all_stages_took_not_the_last_run_alone(self):
+        self.add("a", 3)
+        self.run_step("coarse", "a", "never")
+        with open(os.path.join(self.mission, "results/mission.html"), encoding="utf-8") as page:
+            self.assertIn("Quality: coarse; it took 52 s.", page.read())
 
     def test_a_step_that_goes_on_tells_nothing_of_how_long_one_takes(self):
         self.add("a", 3)
