@@ -13,6 +13,7 @@ namespace {
 
 constexpr char kEscape = '\033';
 constexpr size_t kDateDigits = 8;
+constexpr char kProbe[] = "probe";
 constexpr uint64_t kFullDiskBytes = 1 << 20;  // of what may still be filled
 
 bool BeginsWith(const std::string& text, const char* beginning) {
@@ -55,12 +56,14 @@ struct OutsideCause {
   std::string cause, remedy;  // "": the fault is its own
 };
 
-// Why no file can be written in the folder, which a program may take for a want of memory.
+// Why no file comes to the disk in the folder, which a program may take for a want of memory: a
+// disk that was pulled refuses some calls with these words, and takes others as if it were there.
 std::string DiskFault(const std::filesystem::path& folder) {
   std::error_code error;
   if (!std::filesystem::is_directory(folder, error)) return "";
   try {
-    CheckWritableDir(folder);
+    WriteTextFile(folder / kProbe, "");
+    std::filesystem::remove(folder / kProbe, error);
   } catch (const Error& fault) {
     return fault.Finding();
   }
