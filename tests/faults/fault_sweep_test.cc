@@ -22,7 +22,7 @@ class FaultSweep : public testing::TestWithParam<std::string> {};
 
 TEST_P(FaultSweep, APartOfTheCalls) {
   if (!CanInjectFaults()) GTEST_SKIP() << "this system answers no calls for others";
-  const int stride = GetParam() == "automatic_reconstructor" ? 400 : 100;
+  const int stride = GetParam() == "automatic_reconstructor" ? 800 : 100;
   const FaultSweepFigures figures = SweepFaults(GetParam(), stride, SeedOfVersion(), nullptr);
   EXPECT_GT(figures.num_faults, 10);
   EXPECT_GT(figures.num_kills, 0);
