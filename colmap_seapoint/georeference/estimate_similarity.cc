@@ -254,7 +254,6 @@ bool AllowsFormer(const State& state, const Solution& solution) {
 
 void FillResiduals(const State& state, SimilarityEstimate* estimate) {
   const Similarity3d& similarity = estimate->metric_from_model;
-  double square = 0, count = 0;
   for (size_t i = 0; i < state.problem.positions.size(); ++i) {
     const PositionMeasurement& position = state.problem.positions[i];
     const bool used = state.has_positions && state.position_used[i];
@@ -262,12 +261,9 @@ void FillResiduals(const State& state, SimilarityEstimate* estimate) {
     estimate->position_residuals.push_back(residual);
     estimate->position_used.push_back(used);
     estimate->position_sigmas.push_back(PositionSigma(state, position));
-    if (!used) continue;
-    square += residual.squaredNorm();
-    ++count;
   }
-  estimate->position_rms = count > 0 ? std::sqrt(square / count) : 0;
-  square = count = 0;
+  estimate->position_rms = UsedPositionRms(state, similarity);
+  double square = 0, count = 0;
   for (size_t i = 0; i < state.problem.lengths.size(); ++i) {
     const LengthMeasurement& length = state.problem.lengths[i];
     const double residual = similarity.scale * length.in_model - length.metres;

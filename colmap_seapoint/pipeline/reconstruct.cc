@@ -1,7 +1,6 @@
 #include "colmap_seapoint/pipeline/reconstruct.h"
 
 #include <filesystem>
-#include <map>
 #include <set>
 #include <string>
 #include <utility>

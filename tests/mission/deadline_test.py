@@ -9,6 +9,7 @@ import unittest
 import unittest.mock
 
 sys.dont_write_bytecode = True
+mission_case = importlib.import_module("mission_case")
 sys.path.insert(0, os.path.join(sys.argv.pop(1), "scripts", "mission"))
 deadline, dives, load, plan, reduced, run_step = (
     importlib.import_module(name)
@@ -45,17 +46,8 @@ class Deadline(unittest.TestCase):
         self.assertEqual(deadline.seconds_left("never"), float("inf"))
 
 
-class Mission(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.mission = folder.name
-        os.makedirs(os.path.join(self.mission, "results"))
-        os.environ["XDG_CACHE_HOME"] = os.path.join(self.mission, "results", "cache")
-        self.binary = os.path.join(self.mission, "results", "program")
-        with open(self.binary, "w", encoding="utf-8") as file:
-            file.write(PROGRAM)
-        os.chmod(self.binary, 0o755)
+class Mission(mission_case.MissionCase):
+    program = PROGRAM
 
     def told(self, share):
         with unittest.mock.patch.object(load, "share_to_be_had", return_value=share):

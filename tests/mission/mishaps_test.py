@@ -2,12 +2,12 @@
 import importlib
 import os
 import sys
-import tempfile
 import time
 import unittest
 import unittest.mock
 
 sys.dont_write_bytecode = True
+mission_case = importlib.import_module("mission_case")
 sys.path.insert(0, os.path.join(sys.argv.pop(1), "scripts", "mission"))
 dives, run_step = (importlib.import_module(name) for name in ("dives", "run_step"))
 
@@ -21,17 +21,8 @@ sleep 0.3
 """
 
 
-class Mishaps(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.mission = folder.name
-        os.makedirs(os.path.join(self.mission, "results"))
-        os.environ["XDG_CACHE_HOME"] = os.path.join(self.mission, "results", "cache")
-        self.binary = os.path.join(self.mission, "results", "program")
-        with open(self.binary, "w", encoding="utf-8") as file:
-            file.write(PROGRAM)
-        os.chmod(self.binary, 0o755)
+class Mishaps(mission_case.MissionCase):
+    program = PROGRAM
 
     def run_dive(self, dive):
         os.makedirs(os.path.join(self.mission, dive))
